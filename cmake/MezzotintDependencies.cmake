@@ -1,0 +1,28 @@
+# Every library that we use, found the way it asks to be found. Debian 12's versions.
+
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(embree 3 REQUIRED)
+find_package(NLopt REQUIRED)
+find_package(TBB REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(pugixml REQUIRED)
+find_package(Threads REQUIRED)
+
+find_package(OpenImageIO REQUIRED)
+# Debian's target names a folder of OpenCV headers that is not there; CMake would refuse the target.
+get_target_property(_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
+list(FILTER _includes EXCLUDE REGEX "opencv")
+set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${_includes}")
+
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3)
+pkg_check_modules(ZIP REQUIRED IMPORTED_TARGET libzip)
+pkg_check_modules(TOMLPLUSPLUS REQUIRED IMPORTED_TARGET tomlplusplus)
+pkg_check_modules(NETTLE REQUIRED IMPORTED_TARGET nettle)
+
+# NLopt's package configuration names only the C library, which lacks StoGO and AGS.
+find_library(NLOPT_CXX_LIBRARY nlopt_cxx REQUIRED)
+add_library(mezzotint_nlopt INTERFACE)
+target_link_libraries(mezzotint_nlopt INTERFACE ${NLOPT_CXX_LIBRARY})
