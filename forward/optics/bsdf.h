@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "forward/optics/direction_map.h"
+
+namespace mezzotint {
+
+/// Where the light went, as shares of what came in; they sum to 1 to rounding.
+struct EnergyAudit {
+  Estimate reflected;  ///< albedo
+  Estimate transmitted;
+  Estimate absorbed;
+  Estimate left_sideways;  ///< first met a mirrored copy beyond the measured patch
+  Estimate cut_off;        ///< stopped at the bounce cap, or lost by the tracer; never dropped in silence
+};
+
+/// How a result came to be: attribute names to values, as they stand in the file.
+using Provenance = std::map<std::string, std::string>;
+
+/// The BSDF of a relief for one direction of the light.
+///
+/// Frame    see DirectionGrid. Reflection: upper hemisphere. Transmission: lower hemisphere, Ω inside the
+///          medium, flux weights without n², so ∫ f_t cosθ dω = T.
+/// Units    1/sr.
+struct Bsdf {
+  DirectionAngles incidence;
+  DirectionGrid grid;
+  MapEstimate reflection;
+  MapEstimate transmission;
+  EnergyAudit energy;
+  Provenance provenance;
+};
+
+/// To OpenEXR: float channels "reflection", "reflection.standard_error", "reflection.half_a",
+/// "reflection.half_b", and the same for "transmission"; incidence, energy and provenance as attributes
+/// "mezzotint:…" (all as text or double). The picture's first line is y = −1, and an attribute says so.
+/// Written aside, then renamed; the same result gives the same bytes. Values are rounded to float. A
+/// provenance value that is empty is not kept.
+/// @throws InvalidInput for a map that has not one value a bin, or a provenance key of more than 200
+///         characters; DeviceError where it cannot be written.
+void write_exr(const Bsdf& bsdf, const std::filesystem::path& path);
+
+/// Reads what `write_exr` wrote, also after another tool has rewritten it without loss.
+/// @throws FileError for a file that is no such EXR, is truncated, or larger than 4096 bins a side; its
+///         header is looked at before memory is taken for it.
+[[nodiscard]] Bsdf read_exr(const std::filesystem::path& path);
+
+}  // namespace mezzotint

@@ -1,0 +1,70 @@
+#include "forward/optics/material.h"
+
+#include <charconv>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "forward/base/error.h"
+
+namespace mezzotint {
+
+namespace {
+
+constexpr std::string_view forms =
+    "\"mirror\", \"dielectric:ETA\" (ETA from 1.0001 to 10) or \"conductor:ETA,KAPPA\" (ETA above 0, up to 20; "
+    "KAPPA above 0, up to 50)";
+
+// The whole text as one finite number; nothing else.
+std::optional<double> number(std::string_view text) {
+  double value = 0.0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (problem != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+std::optional<Material> dielectric(std::string_view arguments) {
+  const std::optional<double> eta = number(arguments);
+  if (!eta || !(*eta >= 1.0001 && *eta <= 10.0)) return std::nullopt;
+  return Dielectric{*eta};
+}
+
+std::optional<Material> conductor(std::string_view arguments) {
+  const std::size_t comma = arguments.find(',');
+  if (comma == std::string_view::npos) return std::nullopt;
+  const std::optional<double> eta = number(arguments.substr(0, comma));
+  const std::optional<double> kappa = number(arguments.substr(comma + 1));
+  if (!eta || !kappa) return std::nullopt;
+  if (!(*eta > 0.0 && *eta <= 20.0 && *kappa > 0.0 && *kappa <= 50.0)) return std::nullopt;
+  return Conductor{*eta, *kappa};
+}
+
+std::optional<Material> understood(std::string_view text) {
+  constexpr std::string_view clear = "dielectric:", metal = "conductor:";
+  if (text == "mirror") return Mirror{};
+  if (text.starts_with(clear)) return dielectric(text.substr(clear.size()));
+  if (text.starts_with(metal)) return conductor(text.substr(metal.size()));
+  return std::nullopt;
+}
+
+}  // namespace
+
+Material parse_material(std::string_view text) {
+  const std::optional<Material> material = understood(text);
+  require(material.has_value(), fmt::format("material \"{}\" is not understood; write {}", text, forms));
+  return *material;
+}
+
+std::string to_string(const Material& material) {
+  // The shortest digits that read back as the same number.
+  struct {
+    std::string operator()(const Mirror&) const { return "mirror"; }
+    std::string operator()(const Dielectric& medium) const { return fmt::format("dielectric:{}", medium.eta); }
+    std::string operator()(const Conductor& metal) const {
+      return fmt::format("conductor:{},{}", metal.eta, metal.kappa);
+    }
+  } const text;
+  return std::visit(text, material);
+}
+
+}  // namespace mezzotint
