@@ -1,0 +1,49 @@
+#include "forward/scattering/batch_tally.h"
+
+#include <cmath>
+
+namespace mezzotint {
+
+void BatchTally::leave(Fate fate, const Direction& direction, double weight) {
+  // A ray along the horizon may be a rounding error longer than 1; it belongs to the rim.
+  constexpr double largest = 1.0 - 1e-12;
+  const double square = direction.x() * direction.x() + direction.y() * direction.y();
+  const double inward = square > largest ? std::sqrt(largest / square) : 1.0;
+  const std::size_t bin = grid.bin_of(direction.x() * inward, direction.y() * inward);
+  (fate == Fate::Reflected ? reflected : transmitted)[bin] += weight;
+  add(fate, weight);
+}
+
+void BatchTally::close_slice() {
+  for (std::size_t k = 0; k < fate_count; ++k) total_energy[k] += energy[k];
+  energy = {};
+}
+
+BatchStatistics::BatchStatistics(std::size_t size)
+    : mean_(size), squares_(size), half_sums_{std::vector<double>(size), std::vector<double>(size)} {}
+
+void BatchStatistics::add(std::span<const double> values) {
+  const std::size_t half = static_cast<std::size_t>(count_) % 2;
+  half_counts_[half] += 1.0;
+  count_ += 1.0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double deviation = values[k] - mean_[k];
+    mean_[k] += deviation / count_;
+    squares_[k] += deviation * (values[k] - mean_[k]);
+    half_sums_[half][k] += values[k];
+  }
+}
+
+MapEstimate BatchStatistics::estimate(std::span<const double> scale) const {
+  MapEstimate result;
+  const auto per_error = 1.0 / (count_ * (count_ - 1.0));
+  for (std::size_t k = 0; k < mean_.size(); ++k) {
+    result.mean.push_back(mean_[k] * scale[k]);
+    result.standard_error.push_back(std::sqrt(squares_[k] * per_error) * scale[k]);
+    result.half_a.push_back(half_sums_[0][k] / half_counts_[0] * scale[k]);
+    result.half_b.push_back(half_sums_[1][k] / half_counts_[1] * scale[k]);
+  }
+  return result;
+}
+
+}  // namespace mezzotint

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "forward/optics/bsdf.h"
+#include "forward/optics/direction_map.h"
+
+namespace mezzotint {
+
+/// Where light can go; the order of EnergyAudit.
+enum class Fate : std::uint8_t { Reflected, Transmitted, Absorbed, LeftSideways, CutOff };
+inline constexpr std::size_t fate_count = 5;
+using EnergyTally = std::array<double, fate_count>;
+
+/// What the paths of one batch add up to. One batch is walked by one thread at a time, in the order of its
+/// samples, so that its sums have the same bits however many threads there are.
+struct BatchTally {
+  explicit BatchTally(const DirectionGrid& direction_grid)
+      : grid(direction_grid), reflected(direction_grid.size()), transmitted(direction_grid.size()) {}
+
+  void add(Fate fate, double weight) { energy[static_cast<std::size_t>(fate)] += weight; }
+  /// Light that leaves along `direction`: up into the map of reflection, or down into that of transmission.
+  void leave(Fate fate, const Direction& direction, double weight);
+  /// Moves the energies since the last call to the total: sums of sums stay exact to 1e-15 over 2^36 paths.
+  void close_slice();
+
+  DirectionGrid grid;
+  DirectionMap reflected;
+  DirectionMap transmitted;
+  EnergyTally energy{};  ///< of the open slice
+  EnergyTally total_energy{};
+  std::uint64_t interactions = 0;
+  std::uint64_t normal_fallbacks = 0;  ///< interactions whose interpolated normal could not be used
+  double leaked = 0.0;                 ///< the part of CutOff that went through the surface by rounding
+};
+
+/// Mean and spread of values that come batch after batch (Welford), with the means of even and odd batches.
+class BatchStatistics {
+public:
+  explicit BatchStatistics(std::size_t size);
+  void add(std::span<const double> values);
+
+  /// All estimates, value k multiplied by scale[k].
+  [[nodiscard]] MapEstimate estimate(std::span<const double> scale) const;
+
+private:
+  double count_ = 0.0;
+  std::vector<double> mean_;
+  std::vector<double> squares_;
+  std::array<std::vector<double>, 2> half_sums_;
+  std::array<double, 2> half_counts_{};
+};
+
+}  // namespace mezzotint
