@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+
+#include "forward/optics/microfacet.h"
+#include "forward/surface/height_field.h"
+#include "forward/surface/slope_covariance.h"
+
+namespace mezzotint {
+
+/// What a printed surface should show, as slopes: by the microfacet relation an anisotropic Beckmann lobe with
+/// α_x, α_y *is* a slope distribution with RMS slopes α_x/√2, α_y/√2.
+struct Target {
+  std::string kind;              ///< "beckmann", "anisotropy", "scan": what the user named
+  SlopeAxes slopes;              ///< wanted RMS slopes along their own axes
+  bool rotation_matters = true;  ///< false for a round lobe, or where the user left the direction open
+  double tolerance = 0.05;       ///< largest relative error of either variance of the slope covariance
+  Angle rotation_tolerance = Angle::from_degrees(2.0);
+};
+
+/// @throws InvalidInput for α_x < α_y (α_x is the steeper axis by definition) or α outside of 1e-3 … 2.
+[[nodiscard]] Target beckmann_target(const BeckmannLobe& lobe);
+
+/// An anisotropy ratio α_x/α_y ≥ 1 and a mean roughness √(α_x·α_y); the direction is open.
+[[nodiscard]] Target anisotropy_target(double ratio, double mean_alpha);
+
+/// The slopes of a measured relief (levelled, without missing samples).
+[[nodiscard]] Target scan_target(const HeightField& relief);
+
+/// The Beckmann lobe of given slopes.
+[[nodiscard]] BeckmannLobe lobe_of(const SlopeAxes& slopes);
+
+/// How far a slope covariance is from a target.
+struct TargetError {
+  double variance_major = 0.0;  ///< relative error of the variance along the steeper axis
+  double variance_minor = 0.0;
+  Angle rotation;  ///< unsigned; 0 where it does not matter
+  [[nodiscard]] double largest() const;
+};
+[[nodiscard]] TargetError target_error(const SlopeCovariance& achieved, const Target& target);
+[[nodiscard]] bool is_met(const TargetError& error, const Target& target);
+
+/// The figure that a search lowers: squared distance of two covariances in logarithms, which counts both axes
+/// alike and is the same in every frame: ‖log(T^−½ C T^−½)‖²; (Δlog ratio)² + (Δlog mean)² where the
+/// rotation does not matter. Zero on target; large, but finite, for a flat surface.
+/// Source   Förstner & Moonen 1999, "A metric for covariance matrices".
+[[nodiscard]] double covariance_distance(const SlopeCovariance& achieved, const Target& target);
+
+}  // namespace mezzotint
