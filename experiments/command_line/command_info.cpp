@@ -1,0 +1,131 @@
+#include <fstream>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "experiments/command_line/command.h"
+#include "fabrication/job/job.h"
+#include "forward/base/quantity.h"
+#include "forward/optics/bsdf.h"
+#include "measurement/formats/surface_file.h"
+
+namespace mezzotint {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json describe(const SurfaceFile& surface) {
+  const Grid& grid = surface.field.grid();
+  Json json = {{"format", surface.format},
+               {"title", surface.title},
+               {"columns", grid.columns},
+               {"rows", grid.rows},
+               {"pitch_x", Quantity{grid.pitch_x.um(), "µm", {}}},
+               {"pitch_y", Quantity{grid.pitch_y.um(), "µm", {}}},
+               {"width", Quantity{grid.pitch_x.um() * static_cast<double>(grid.columns), "µm", {}}},
+               {"depth", Quantity{grid.pitch_y.um() * static_cast<double>(grid.rows), "µm", {}}},
+               {"missing", surface.field.missing_count()},
+               {"periodic", surface.field.periodic()},
+               {"datum", Quantity{surface.field.datum().um(), "µm", {}}}};
+  if (surface.field.missing_count() < grid.size()) {
+    const HeightRange range = height_range(surface.field);
+    json["lowest"] = Quantity{range.lowest.um(), "µm", {}};
+    json["highest"] = Quantity{range.highest.um(), "µm", {}};
+  }
+  json["assumption"] = surface.assumption;
+  json["provenance"] = surface.provenance;
+  return json;
+}
+
+Json describe(const Bsdf& bsdf) {
+  const auto share = [](const Estimate& e) { return Quantity{e.value, "1", e.standard_error}; };
+  return {{"format", "BSDF (OpenEXR)"},
+          {"width", bsdf.grid.width},
+          {"height", bsdf.grid.height},
+          {"incidence_theta", Quantity{bsdf.incidence.theta.degrees(), "°", {}}},
+          {"incidence_phi", Quantity{bsdf.incidence.phi.degrees(), "°", {}}},
+          {"albedo", share(bsdf.energy.reflected)},
+          {"transmitted", share(bsdf.energy.transmitted)},
+          {"absorbed", share(bsdf.energy.absorbed)},
+          {"left_sideways", share(bsdf.energy.left_sideways)},
+          {"cut_off", share(bsdf.energy.cut_off)},
+          {"provenance", bsdf.provenance}};
+}
+
+Json describe(const Job& job) {
+  return {{"format", "uvj"},
+          {"name", job.name},
+          {"printer", job.printer},
+          {"columns", job.columns},
+          {"rows", job.rows},
+          {"pixel_pitch", Quantity{job.pixel_pitch.um(), "µm", {}}},
+          {"layer", Quantity{job.layer.um(), "µm", {}}},
+          {"layers", job.layers.size()},
+          {"led_amplitude", job.led_amplitude}};
+}
+
+bool begins_with(const std::filesystem::path& path, std::string_view magic) {
+  std::ifstream stream(path, std::ios::binary);
+  std::string head(magic.size(), '\0');
+  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+  return stream && head == magic;
+}
+
+Json describe_any(const std::filesystem::path& path) {
+  if (path.extension() == ".uvj") return describe(read_uvj(path));
+  if (begins_with(path, "\x76\x2f\x31\x01")) return describe(read_exr(path));
+  return describe(read_surface(path));
+}
+
+std::string value_in_words(const Json& value) {
+  if (value.is_object() && value.contains("value")) {
+    std::string text = fmt::format("{:.6g}", value["value"].is_number() ? value["value"].get<double>() : 0.0);
+    if (value.contains("standard_error") && value["standard_error"].is_number()) {
+      text += fmt::format(" ± {:.2g}", value["standard_error"].get<double>());
+    }
+    return value["unit"] == "1" ? text : text + " " + value["unit"].get<std::string>();
+  }
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+std::string in_words(const Json& json) {
+  std::string text;
+  for (const auto& [key, value] : json.items()) {
+    const bool is_list = value.is_object() && !value.contains("value");
+    if (!is_list) {
+      if (value_in_words(value).empty()) continue;
+      text += fmt::format("{:<16}{}\n", key, value_in_words(value));
+      continue;
+    }
+    for (const auto& [name, entry] : value.items()) text += fmt::format("  {:<14}{}\n", name, value_in_words(entry));
+  }
+  if (!text.empty()) text.pop_back();
+  return text;
+}
+
+Command describing_command(CLI::App& program, const char* name, const char* help,
+                           Json (*describe_file)(const std::filesystem::path&)) {
+  auto* app = program.add_subcommand(name, help);
+  auto file = std::make_shared<std::string>();
+  app->add_option("FILE", *file, "File")->required();
+  return {app, [file, describe_file](const CommandContext& context) {
+            const Json json = describe_file(*file);
+            context.print(json, in_words(json));
+            return ExitStatus::Done;
+          }};
+}
+
+}  // namespace
+
+Command add_info(CLI::App& program) {
+  return describing_command(
+      program, "info", "What a file is: surface, BSDF or job; size, spacing, units, range, provenance", describe_any);
+}
+
+Command add_job(CLI::App& program) {
+  return describing_command(program, "job", "Check a layer archive (.uvj): layers, sizes, bit depth, exposures, hashes",
+                            [](const std::filesystem::path& path) { return describe(read_uvj(path)); });
+}
+
+}  // namespace mezzotint

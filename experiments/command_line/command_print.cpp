@@ -1,0 +1,102 @@
+#include <cmath>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "experiments/command_line/command.h"
+#include "experiments/configuration/printer_file.h"
+#include "experiments/run/run_files.h"
+#include "fabrication/device/virtual_printer.h"
+#include "measurement/comparison/registration.h"
+#include "measurement/correction/correction.h"
+#include "measurement/formats/surface_file.h"
+#include "measurement/texture/roughness.h"
+
+namespace mezzotint {
+
+namespace {
+
+struct PrintArguments {
+  std::string job;
+  std::string output;
+  std::string device = "virtual";
+  std::string printer;
+  std::size_t subsamples = 4;
+};
+
+struct ValidateArguments {
+  std::string design;
+  std::string measured;
+  std::string output;
+};
+
+HeightField only_where_measured(const HeightField& field, const HeightField& mask) {
+  HeightField result = field;
+  for (std::size_t i = 0; i < result.heights_um().size(); ++i) {
+    if (std::isnan(mask.heights_um()[i])) result.heights_um()[i] = mask.heights_um()[i];
+  }
+  return result;
+}
+
+}  // namespace
+
+Command add_print(CLI::App& program) {
+  auto* app = program.add_subcommand("print", "Print a job (.uvj) on the virtual printer; the relief becomes a .gwy");
+  auto arguments = std::make_shared<PrintArguments>();
+  app->add_option("JOB", arguments->job, "Layer archive (.uvj)")->required();
+  app->add_option("--output,-o", arguments->output, "Printed relief to write (.gwy)")->required();
+  app->add_option("--device", arguments->device, "virtual")->check(CLI::IsMember({"virtual"}));
+  app->add_option("--printer", arguments->printer, "Printer profile (TOML; default: the slides' printer)");
+  app->add_option("--subsamples", arguments->subsamples, "Samples of the relief a pixel and axis (default 4)")
+      ->check(CLI::Range(1, 16));
+  return {
+      app, [arguments](const CommandContext& context) {
+        const PrinterProfile printer = arguments->printer.empty() ? PrinterProfile{} : read_printer(arguments->printer);
+        const std::uint64_t seed = context.common.seed >= 0 ? static_cast<std::uint64_t>(context.common.seed) : 1;
+        const HeightField relief = print_virtually(
+            read_uvj(arguments->job), printer, {.subsamples = arguments->subsamples, .seed = seed}, context.progress);
+        write_gwy(relief, "printed", {{"device", "virtual printer"}, {"printer", printer.name}}, arguments->output);
+        context.print({{"written", arguments->output}, {"columns", relief.columns()}, {"rows", relief.rows()}},
+                      "wrote " + arguments->output);
+        return ExitStatus::Done;
+      }};
+}
+
+Command add_validate(CLI::App& program) {
+  auto* app = program.add_subcommand("validate", "Register a measured surface to a design and compare them");
+  auto arguments = std::make_shared<ValidateArguments>();
+  app->add_option("DESIGN", arguments->design, "Designed relief (.gwy)")->required();
+  app->add_option("--measured", arguments->measured, "Measured surface (.al3d, .x3p, .gwy)")->required();
+  app->add_option("--output,-o", arguments->output, "Folder for registered.gwy, residual.gwy, comparison.json")
+      ->required();
+  return {app, [arguments](const CommandContext& context) {
+            const HeightField design = read_surface(arguments->design).field;
+            const HeightField measured = level(read_surface(arguments->measured).field);
+            const Registration registration = register_surfaces(design, measured, {}, context.progress);
+            const HeightField registered = resample_to_design(design, measured, registration);
+            const HeightField difference = residual(design, registered);
+            const nlohmann::ordered_json json = {
+                {"registration", to_json(registration)},
+                {"residual", to_json(area_roughness(difference))},
+                {"roughness",
+                 {{"design", to_json(area_roughness(level(only_where_measured(design, registered))))},
+                  {"measured", to_json(area_roughness(level(registered)))}}}};
+            const std::filesystem::path folder = arguments->output;
+            std::filesystem::create_directories(folder);
+            write_gwy(registered, "registered", {}, folder / "registered.gwy");
+            write_gwy(difference, "residual", {}, folder / "residual.gwy");
+            write_json(json, folder / "comparison.json");
+            context.print(
+                json, fmt::format(
+                          "shift ({:.2f} ± {:.2g}, {:.2f} ± {:.2g}) µm, rotation {:.3f} ± {:.2g}°, correlation {:.4f}\n"
+                          "residual {:.4f} µm RMS\nwrote {}",
+                          registration.shift_x.value.um(), registration.shift_x.standard_error.um(),
+                          registration.shift_y.value.um(), registration.shift_y.standard_error.um(),
+                          registration.rotation.value.degrees(), registration.rotation.standard_error.degrees(),
+                          registration.correlation, area_roughness(difference).Sq.value,
+                          (folder / "comparison.json").string()));
+            return ExitStatus::Done;
+          }};
+}
+
+}  // namespace mezzotint

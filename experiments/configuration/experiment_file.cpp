@@ -1,0 +1,159 @@
+#include "experiments/configuration/experiment_file.h"
+
+#include "experiments/configuration/printer_file.h"
+#include "experiments/configuration/suggestion.h"
+#include "inverse/minimize.h"
+
+namespace mezzotint {
+
+namespace {
+
+constexpr Range alpha_range{1e-3, 2.0};
+constexpr Range direction_range{-360.0, 360.0};
+
+TargetSpecification read_target(TomlTable table) {
+  TargetSpecification target;
+  target.kind = table.choice("kind", {"beckmann", "anisotropy", "scan"});
+  if (target.kind == "beckmann") {
+    target.alpha_x = table.number("alpha_x", alpha_range);
+    target.alpha_y = table.number("alpha_y", alpha_range);
+    target.rotation = Angle::from_degrees(table.number("rotation_deg", direction_range, 0.0));
+    if (target.alpha_x < target.alpha_y) {
+      table.complain("alpha_y",
+                     "\"alpha_x\" is that of the steeper axis and must not be below \"alpha_y\"; swap them and "
+                     "turn \"rotation_deg\" by 90");
+    }
+  } else if (target.kind == "anisotropy") {
+    target.ratio = table.number("ratio", {1.0, 100.0});
+    target.mean_alpha = table.number("mean_alpha", alpha_range);
+  } else {
+    target.scan = table.file("scan");
+    target.outliers = table.number("outliers", {0.0, 100.0}, target.outliers);
+  }
+  target.tolerance = table.number("tolerance", {1e-6, 10.0}, target.tolerance);
+  target.rotation_tolerance = Angle::from_degrees(table.number("rotation_tolerance_deg", {1e-3, 90.0}, 2.0));
+  table.finish();
+  return target;
+}
+
+PrinterProfile read_printer_table(TomlTable table) {
+  PrinterProfile printer;
+  if (table.has("profile")) printer = read_printer(table.file("profile"));
+  table.finish();
+  return printer;
+}
+
+Material read_material(TomlTable& table) {
+  const std::string text = table.text("material", "dielectric:1.5");
+  try {
+    return parse_material(text);
+  } catch (const InvalidInput& error) {
+    table.complain("material", error.what());
+  }
+}
+
+SimulationSpecification read_simulation(TomlTable table) {
+  SimulationSpecification simulation;
+  for (const auto& [theta, phi] : table.pairs("incidence_deg", direction_range, {{20.0, 0.0}, {20.0, 90.0}})) {
+    if (theta < 0.0 || theta > 89.0)
+      table.complain("incidence_deg", "the first angle of a pair is from the normal, in [0, 89]");
+    simulation.incidences.push_back({Angle::from_degrees(theta), Angle::from_degrees(phi)});
+  }
+  simulation.wavelength = Length::from_nm(table.number("wavelength_nm", {200.0, 20000.0}, 550.0));
+  simulation.material = read_material(table);
+  // One rung of the ladder predicts its own error so far; "auto" can only mean that one.
+  (void)table.choice("model", {"auto", "paths"}, "auto");
+  simulation.resolution = static_cast<std::size_t>(table.integer("resolution", 8, 1024, 64));
+  simulation.tolerance = table.number("tolerance", {1e-4, 1.0}, simulation.tolerance);
+  simulation.most_samples = static_cast<std::uint64_t>(
+      table.integer("samples", 1 << 12, std::int64_t{1} << 34, std::int64_t(simulation.most_samples)));
+  table.finish();
+  return simulation;
+}
+
+void read_search(TomlTable table, Experiment& experiment) {
+  MinimizeOptions& search = experiment.search;
+  search.algorithm = table.text("algorithm", search.algorithm);
+  if (!is_known_algorithm(search.algorithm)) {
+    table.complain("algorithm",
+                   "NLopt knows no algorithm \"" + search.algorithm + "\"" +
+                       suggest(search.algorithm,
+                               {"LN_BOBYQA", "LN_SBPLX", "LN_COBYLA", "LN_NELDERMEAD", "LN_PRAXIS", "LN_NEWUOA_BOUND",
+                                "GN_DIRECT_L", "GN_CRS2_LM", "GN_ISRES", "GN_ESCH", "GN_AGS", "G_MLSL_LDS", "LD_LBFGS",
+                                "LD_SLSQP", "LD_MMA", "LD_CCSAQ", "LD_TNEWTON", "LD_VAR2"}));
+  }
+  search.max_evaluations = static_cast<int>(table.integer("max_evaluations", 1, 1'000'000, search.max_evaluations));
+  search.relative_tolerance = table.number("relative_tolerance", {1e-12, 0.5}, search.relative_tolerance);
+  search.seed = static_cast<std::uint64_t>(table.integer("seed", 0, std::int64_t{1} << 50, std::int64_t(search.seed)));
+  experiment.search_draws =
+      static_cast<std::size_t>(table.integer("draws", 1, 256, std::int64_t(experiment.search_draws)));
+  experiment.fresh_draws =
+      static_cast<std::size_t>(table.integer("fresh_draws", 2, 256, std::int64_t(experiment.fresh_draws)));
+  table.finish();
+}
+
+void read_print(TomlTable table, Experiment& experiment) {
+  experiment.patch.pixels =
+      static_cast<std::size_t>(table.integer("patch_pixels", 32, 1024, std::int64_t(experiment.patch.pixels)));
+  experiment.patch.subsamples =
+      static_cast<std::size_t>(table.integer("subsamples", 2, 16, std::int64_t(experiment.patch.subsamples)));
+  experiment.print.base_layers =
+      static_cast<std::size_t>(table.integer("base_layers", 1, 1000, std::int64_t(experiment.print.base_layers)));
+  experiment.print.margin_pixels =
+      static_cast<std::size_t>(table.integer("margin_pixels", 2, 1000, std::int64_t(experiment.print.margin_pixels)));
+  table.finish();
+  const std::size_t side = experiment.patch.pixels + 2 * experiment.print.margin_pixels;
+  if (side > experiment.printer.pixels_x || side > experiment.printer.pixels_y) {
+    table.complain("patch_pixels", "the patch and its margin need " + std::to_string(side) +
+                                       " pixels a side; the printer has " +
+                                       std::to_string(experiment.printer.pixels_x) + " × " +
+                                       std::to_string(experiment.printer.pixels_y));
+  }
+}
+
+VirtualProfilometer read_measurement(TomlTable table) {
+  VirtualProfilometer instrument;
+  const auto um = [&](std::string_view key, Range range, Length fallback) {
+    return Length::from_um(table.number(key, range, fallback.um()));
+  };
+  instrument.pitch = um("pitch_um", {0.1, 100.0}, instrument.pitch);
+  instrument.shift_x = um("shift_x_um", {-1e4, 1e4}, Length::from_um(11.3));
+  instrument.shift_y = um("shift_y_um", {-1e4, 1e4}, Length::from_um(-7.9));
+  instrument.rotation = Angle::from_degrees(table.number("rotation_deg", {-5.0, 5.0}, 0.7));
+  instrument.tilt_x = table.number("tilt_x", {-0.1, 0.1}, 0.002);
+  instrument.tilt_y = table.number("tilt_y", {-0.1, 0.1}, -0.001);
+  instrument.noise = Length::from_nm(table.number("noise_nm", {0.0, 1e4}, 20.0));
+  instrument.missing_share = table.number("missing_share", {0.0, 0.5}, 0.001);
+  instrument.seed = static_cast<std::uint64_t>(table.integer("seed", 0, INT64_MAX, 1));
+  table.finish();
+  return instrument;
+}
+
+}  // namespace
+
+Experiment read_experiment(const std::filesystem::path& path, const std::vector<std::string>& settings) {
+  const TomlFile file(path, settings);
+  TomlTable root(file);
+  Experiment experiment;
+  experiment.file = path;
+  experiment.name = path.stem().string();
+  experiment.canonical_text = file.canonical_text();
+  experiment.title = root.text("title", experiment.name);
+  if (!root.has("target")) root.complain("target", "an experiment needs a [target] table");
+  experiment.target = read_target(root.table("target"));
+  experiment.printer = read_printer_table(root.table("printer"));
+  experiment.pattern = read_pattern(root.table("pattern"), root.has("pattern"));
+  experiment.simulation = read_simulation(root.table("simulation"));
+  experiment.patch.wavelength = experiment.simulation.wavelength;
+  read_search(root.table("search"), experiment);
+  read_print(root.table("print"), experiment);
+  experiment.measurement = read_measurement(root.table("measurement"));
+  root.finish();
+  if (experiment.pattern.free.empty()) {
+    root.complain("pattern",
+                  "no parameter of the pattern is free; a search needs one, like scale_um = { free = [30.2, 400.0] }");
+  }
+  return experiment;
+}
+
+}  // namespace mezzotint

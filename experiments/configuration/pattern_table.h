@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "experiments/configuration/toml_table.h"
+#include "forward/pattern/pattern.h"
+#include "inverse/design.h"
+
+namespace mezzotint {
+
+/// A pattern, and which of its numbers a search may change.
+struct PatternSpecification {
+  Pattern pattern;
+  std::vector<FreeParameter> free;
+  std::string reason;  ///< why this kind, where the user left it open
+};
+
+/// Reads a `[pattern]` table. Where the table or its kind is left out, stretched noise is taken, and `reason`
+/// says why; a parameter that is left out of an experiment keeps its default and is not free, unless the
+/// whole table is left out: then all that matter are.
+[[nodiscard]] PatternSpecification read_pattern(TomlTable table, bool table_is_there);
+
+/// A pattern and the grid to evaluate it on: the file of `mezzotint synthesize`.
+struct PatternFile {
+  Pattern pattern;
+  Grid grid;
+};
+/// @throws ConfigurationError; free parameters are refused, there is nothing to search.
+[[nodiscard]] PatternFile read_pattern_file(const std::filesystem::path& path,
+                                            const std::vector<std::string>& settings = {});
+
+/// A pattern as the text of such a file.
+[[nodiscard]] std::string pattern_file_text(const PatternFile& file, const std::string& comment);
+
+}  // namespace mezzotint

@@ -1,0 +1,70 @@
+#include "experiments/configuration/printer_file.h"
+
+#include "experiments/configuration/toml_table.h"
+
+namespace mezzotint {
+
+namespace {
+
+Length um(TomlTable& table, std::string_view key, Range range, Length fallback) {
+  return Length::from_um(table.number(key, range, fallback.um()));
+}
+
+void read_pixels(TomlTable& table, PrinterProfile& printer) {
+  printer.pixels_x = static_cast<std::size_t>(table.integer("pixels_x", 1, 65536, std::int64_t(printer.pixels_x)));
+  printer.pixels_y = static_cast<std::size_t>(table.integer("pixels_y", 1, 65536, std::int64_t(printer.pixels_y)));
+  printer.pixel_pitch = um(table, "pixel_pitch_um", {0.1, 1000.0}, printer.pixel_pitch);
+  printer.layer = um(table, "layer_um", {0.1, 1000.0}, printer.layer);
+  printer.exposure_s = table.number("exposure_s", {1e-3, 3600.0}, printer.exposure_s);
+  printer.led_amplitude = static_cast<int>(table.integer("led_amplitude", 0, 1023, printer.led_amplitude));
+  printer.gray_levels = static_cast<int>(table.integer("gray_levels", 2, 65536, printer.gray_levels));
+}
+
+void read_cure(TomlTable table, CureCurve& cure) {
+  cure.alpha = um(table, "alpha_um", {-1000.0, 1000.0}, cure.alpha);
+  cure.beta = um(table, "beta_um", {1e-3, 1000.0}, cure.beta);
+  cure.gamma = table.number("gamma", {-1.0, 0.99}, cure.gamma);
+  table.finish();
+}
+
+void read_blur(TomlTable table, PrinterProfile& printer) {
+  printer.blur_sigma = um(table, "sigma_um", {0.0, 100.0}, printer.blur_sigma);
+  printer.blur_is_calibrated = table.boolean("calibrated", printer.blur_is_calibrated);
+  table.finish();
+}
+
+void read_ground(TomlTable table, PrinterProfile& printer) {
+  printer.ground_amplitude = um(table, "amplitude_um", {0.0, 100.0}, printer.ground_amplitude);
+  printer.ground_is_calibrated = table.boolean("calibrated", printer.ground_is_calibrated);
+  if (table.has("octaves")) {
+    printer.ground.clear();
+    for (TomlTable& octave : table.tables("octaves")) {
+      printer.ground.push_back(
+          {octave.number("weight", {0.0, 10.0}), Length::from_um(octave.number("scale_um", {0.01, 1e5}))});
+      octave.finish();
+    }
+  }
+  table.finish();
+}
+
+}  // namespace
+
+PrinterProfile read_printer(const std::filesystem::path& path) {
+  const TomlFile file(path);
+  TomlTable table(file);
+  PrinterProfile printer;
+  printer.name = table.text("name", path.stem().string());
+  read_pixels(table, printer);
+  read_cure(table.table("cure"), printer.cure);
+  read_blur(table.table("blur"), printer);
+  read_ground(table.table("ground"), printer);
+  table.finish();
+  try {
+    require_valid(printer);
+  } catch (const InvalidInput& error) {
+    throw ConfigurationError(path.string() + ": " + error.what());
+  }
+  return printer;
+}
+
+}  // namespace mezzotint

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "experiments/configuration/experiment_file.h"
+#include "forward/base/progress.h"
+
+namespace mezzotint {
+
+struct RunOptions {
+  std::filesystem::path folder;
+  bool resume = false;
+  /// The last stage that is wanted ("search" for `mezzotint design`); the report is made in any case.
+  std::string last_stage = "report";
+};
+
+/// What a run came to.
+struct RunOutcome {
+  std::filesystem::path folder;
+  bool met = false;                ///< the target, within the tolerances that the file states
+  nlohmann::ordered_json summary;  ///< summary.json
+};
+
+/// Runs an experiment stage by stage; each leaves its files in the run folder before the next begins.
+///
+/// Bits     every file is the same for the same experiment, seed, version and SIMD target, but for timing.json.
+/// @throws  what its stages throw; finished stages stay on disk, and `resume` goes on after them.
+[[nodiscard]] RunOutcome run_experiment(const Experiment& experiment, const RunOptions& options,
+                                        const Progress& progress);
+
+/// What identifies a run: program version, all settings, printer profile, and the content of a scan.
+[[nodiscard]] std::string experiment_digest(const Experiment& experiment);
+
+}  // namespace mezzotint

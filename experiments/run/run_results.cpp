@@ -1,0 +1,131 @@
+#include "experiments/run/run_results.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "experiments/run/patch.h"
+#include "experiments/version.h"
+#include "measurement/correction/correction.h"
+#include "measurement/formats/surface_file.h"
+
+namespace mezzotint {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Bsdf read_map(const RunFolder& folder, const char* name, std::size_t incidence) {
+  return read_exr(folder / fmt::format("bsdf_{}_{}.exr", name, incidence));
+}
+
+// An anisotropy leaves the direction open: its lobe is compared at the direction that was printed.
+SlopeAxes wanted_slopes(const Target& target, const SlopeAxes& printed) {
+  SlopeAxes wanted = target.slopes;
+  if (target.kind == "anisotropy") wanted.rotation = printed.rotation;
+  return wanted;
+}
+
+IncidenceResult load_incidence(const Experiment& experiment, const RunFolder& folder, const RunResults& results,
+                               std::size_t index) {
+  IncidenceResult r;
+  r.incidence = experiment.simulation.incidences[index];
+  r.predicted = read_map(folder, "predicted", index);
+  r.printed = read_map(folder, "printed", index);
+  r.measured = read_map(folder, "measured", index);
+  if (results.target_relief) r.traced_target = read_map(folder, "target", index);
+  const DirectionGrid& grid = r.printed.grid;
+  const auto lobe = [&](const SlopeAxes& slopes) {
+    return reflection_map(lobe_of(slopes), experiment.simulation.material, r.incidence, grid);
+  };
+  r.target_lobe = lobe(wanted_slopes(results.target, results.printed_slopes));
+  r.own_lobe = lobe(results.printed_slopes);
+  r.printed_to_target = r.traced_target ? relative_l2(grid, r.printed.reflection, r.traced_target->reflection)
+                                        : relative_l2(grid, r.printed.reflection, r.target_lobe);
+  r.printed_to_own_lobe = relative_l2(grid, r.printed.reflection, r.own_lobe);
+  r.own_lobe_to_target_lobe = relative_l2(grid, r.own_lobe, r.target_lobe);
+  r.measured_to_predicted = relative_l2(grid, r.measured.reflection, r.predicted.reflection);
+  return r;
+}
+
+Json figure(double value, const char* unit, double standard_error) { return Quantity{value, unit, standard_error}; }
+
+Json slopes_summary(const SlopeAxesEstimate& estimate) {
+  const double to_alpha = std::sqrt(2.0);
+  return {{"alpha_x", figure(to_alpha * estimate.axes.rms_major, "1", to_alpha * estimate.rms_major_error)},
+          {"alpha_y", figure(to_alpha * estimate.axes.rms_minor, "1", to_alpha * estimate.rms_minor_error)},
+          {"rotation", figure(estimate.axes.rotation.degrees(), "°", estimate.rotation_error.degrees())}};
+}
+
+Json error_summary(const TargetError& error) {
+  return {{"relative_variance_major", error.variance_major},
+          {"relative_variance_minor", error.variance_minor},
+          {"rotation_deg", error.rotation.degrees()}};
+}
+
+Json difference_summary(const MapDifference& difference) {
+  return {{"relative_l2", quantity_of(difference.corrected)},
+          {"relative_l2_with_noise", difference.plain},
+          {"monte_carlo_floor", difference.floor}};
+}
+
+Json incidence_summary(const IncidenceResult& r) {
+  return {{"incidence_deg", {r.incidence.theta.degrees(), r.incidence.phi.degrees()}},
+          {"albedo_printed", quantity_of(r.printed.energy.reflected)},
+          {"albedo_measured", quantity_of(r.measured.energy.reflected)},
+          {"printed_to_target", difference_summary(r.printed_to_target)},
+          {"printed_to_beckmann_of_its_own_slopes", difference_summary(r.printed_to_own_lobe)},
+          {"beckmann_of_its_own_slopes_to_target_lobe", {{"relative_l2", r.own_lobe_to_target_lobe}}},
+          {"measured_to_predicted", difference_summary(r.measured_to_predicted)}};
+}
+
+}  // namespace
+
+Quantity quantity_of(const Estimate& estimate) { return {estimate.value, "1", estimate.standard_error}; }
+
+RunResults load_results(const Experiment& experiment, const RunFolder& folder) {
+  const auto relief = [&](const char* file) { return read_gwy(folder / file).field; };
+  RunResults results{.target = target_from_json(read_json(folder / "target.json")),
+                     .design = design_from_json(read_json(folder / "design.json")),
+                     .comparison = read_json(folder / "comparison.json"),
+                     .design_relief = relief("design.gwy"),
+                     .printed_relief = level(inner_patch_of_picture(relief("printed.gwy"), experiment)),
+                     .measured_relief = relief("registered.gwy"),
+                     .residual_relief = relief("residual.gwy")};
+  if (experiment.target.kind == "scan") results.target_relief = relief("target.gwy");
+  const SlopeCovariance printed = slope_covariance(results.printed_relief);
+  results.printed_slopes = principal_axes(printed);
+  results.printed_error = target_error(printed, results.target);
+  results.coherent_share = split_ground(experiment.printer, experiment.simulation.wavelength).coherent_share;
+  for (std::size_t i = 0; i < experiment.simulation.incidences.size(); ++i) {
+    results.incidences.push_back(load_incidence(experiment, folder, results, i));
+  }
+  return results;
+}
+
+nlohmann::ordered_json summarize(const Experiment& experiment, const RunResults& results) {
+  const double to_alpha = std::sqrt(2.0);
+  Json summary = {{"experiment", experiment.name},
+                  {"program", std::string("mezzotint ") + program_version},
+                  {"met", results.design.met},
+                  {"target",
+                   {{"kind", results.target.kind},
+                    {"alpha_x", to_alpha * results.target.slopes.rms_major},
+                    {"alpha_y", to_alpha * results.target.slopes.rms_minor},
+                    {"rotation_deg", results.target.slopes.rotation.degrees()},
+                    {"tolerance", results.target.tolerance}}},
+                  {"fresh_draws", slopes_summary(results.design.on_fresh_draws)},
+                  {"fresh_draws_error", error_summary(results.design.fresh_error)},
+                  {"this_print",
+                   {{"alpha_x", to_alpha * results.printed_slopes.rms_major},
+                    {"alpha_y", to_alpha * results.printed_slopes.rms_minor},
+                    {"rotation_deg", results.printed_slopes.rotation.degrees()},
+                    {"error", error_summary(results.printed_error)}}},
+                  {"ground_coherent_share", results.coherent_share},
+                  {"comparison", results.comparison},
+                  {"warnings", results.design.warnings}};
+  for (const auto& incidence : results.incidences) summary["bsdf"].push_back(incidence_summary(incidence));
+  return summary;
+}
+
+}  // namespace mezzotint

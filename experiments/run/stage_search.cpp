@@ -1,0 +1,40 @@
+#include "experiments/configuration/pattern_table.h"
+#include "experiments/run/run_files.h"
+#include "experiments/run/stages.h"
+#include "forward/base/file_output.h"
+
+namespace mezzotint {
+
+namespace {
+
+DesignProblem problem_of(const Experiment& experiment, const Target& target) {
+  return {.target = target,
+          .pattern = experiment.pattern.pattern,
+          .free = experiment.pattern.free,
+          .printer = experiment.printer,
+          .patch = experiment.patch,
+          .search_draws = experiment.search_draws,
+          .fresh_draws = experiment.fresh_draws,
+          .search = experiment.search};
+}
+
+Grid patch_grid(const Experiment& experiment) {
+  const Length pitch = experiment.printer.pixel_pitch;
+  return {experiment.patch.pixels, experiment.patch.pixels, pitch, pitch};
+}
+
+}  // namespace
+
+std::vector<std::string> run_search(const StageContext& context) {
+  const Target target = target_from_json(read_json(context.folder / "target.json"));
+  const Design design = find_design(problem_of(context.experiment, target), context.progress);
+  write_json(to_json(design), context.folder / "design.json");
+  const Pattern drawn = draw_instance(design.pattern, design.fresh_seeds.front()).pattern;
+  write_file(context.folder / "pattern.toml",
+             pattern_file_text({drawn, patch_grid(context.experiment)},
+                               "The design of \"" + context.experiment.title +
+                                   "\": mezzotint synthesize pattern.toml -o relief.gwy"));
+  return {"design.json", "pattern.toml"};
+}
+
+}  // namespace mezzotint

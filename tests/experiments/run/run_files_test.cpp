@@ -1,0 +1,39 @@
+#include "experiments/run/run_files.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace mezzotint {
+namespace {
+
+Design some_design() {
+  Design design{.pattern = Noise{.scale = 61.7_um, .stretch = 1.0 / 3.0 + 1.0, .direction = 31.1_deg, .seed = 77}};
+  design.variables = {{"scale_um", 30.2, 400.0, 90.1, true}};
+  design.history = {{{90.1}, 0.1 + 0.2}, {{61.7}, std::nan("")}};
+  design.search = {{{61.7}, 1e-17}, 2, "converged", true};
+  design.fresh_covariances = {{0.1, 0.2, 0.3}, {0.4, 0.5, -0.6}};
+  design.fresh_seeds = {1500, 1501};
+  design.warnings = {"µm \"quoted\""};
+  return design;
+}
+
+TEST(RunFiles, GiveBackADesignBitForBit) {
+  const Design design = some_design();
+  const auto text = to_json(design).dump();
+  const Design read = design_from_json(nlohmann::ordered_json::parse(text));
+  EXPECT_EQ(to_json(read).dump(), text);
+  EXPECT_EQ(std::get<Noise>(read.pattern).stretch, std::get<Noise>(design.pattern).stretch);
+  EXPECT_EQ(read.history[0].objective, 0.1 + 0.2);
+  EXPECT_TRUE(std::isnan(read.history[1].objective));
+  EXPECT_EQ(read.fresh_covariances[1].xy, -0.6);
+}
+
+TEST(RunFiles, GiveBackATargetBitForBit) {
+  const Target target = beckmann_target({0.25, 0.1, 30.0_deg});
+  const auto json = to_json(target);
+  EXPECT_EQ(to_json(target_from_json(nlohmann::ordered_json::parse(json.dump()))).dump(), json.dump());
+}
+
+}  // namespace
+}  // namespace mezzotint
