@@ -62,7 +62,7 @@ void warn_of_pixels(const DesignProblem& problem, Design& design) {
         "the pattern's shortest length is {:.1f} pixels; below 4 the pixel grid itself shapes the relief", pixels));
   }
   const Exposure exposure = expose(
-      pixel_heights(draw_instance(design.pattern, design.fresh_seeds.front()), problem.printer, problem.patch.pixels),
+      pixel_heights(draw_instance(design.pattern, design.print_seed), problem.printer, problem.patch.pixels),
       problem.printer);
   const double share = static_cast<double>(exposure.saturated) / static_cast<double>(exposure.image.values.size());
   if (share > 0.0) {
@@ -93,6 +93,16 @@ void warn_of_overfit(const DesignProblem& problem, Design& design) {
         "the fresh draws are further off than their own scatter explains: the search fitted its draws; give it more "
         "draws or a larger patch");
   }
+}
+
+// Every draw is off by its own chance; the judgement is on all of them, but one has to be printed.
+std::uint64_t closest_draw(const Target& target, const Design& design) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < design.fresh_seeds.size(); ++i) {
+    const auto distance = [&](std::size_t k) { return covariance_distance(design.fresh_covariances[k], target); };
+    if (distance(i) < distance(best)) best = i;
+  }
+  return design.fresh_seeds[best];
 }
 
 MinimizeResult run_search(const DesignProblem& problem, Design& design, const Progress& progress) {
@@ -147,6 +157,7 @@ Design find_design(const DesignProblem& problem, const Progress& progress) {
   const PrintedTexture fresh(problem.printer, problem.patch, design.fresh_seeds);
   design.fresh_covariances = fresh.slope_covariances(design.pattern, GrayLevels::Quantized);
   design.on_fresh_draws = estimate_axes(design.fresh_covariances);
+  design.print_seed = closest_draw(problem.target, design);
   design.fresh_error = target_error(mean_of(design.fresh_covariances).mean, problem.target);
   design.met = is_met(design.fresh_error, problem.target);
   warn_of_pixels(problem, design);

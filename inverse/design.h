@@ -42,6 +42,7 @@ struct Design {
   SlopeAxesEstimate on_fresh_draws;   ///< quantised to the printer's levels, draws that the search never saw
   std::vector<SlopeCovariance> fresh_covariances;
   std::vector<std::uint64_t> fresh_seeds;
+  std::uint64_t print_seed = 0;  ///< the fresh draw whose own covariance is closest to the target: the one to print
   TargetError fresh_error;
   bool met = false;
   /// In words: saturated pixels, wavelengths under 4 pixels, a bound that was hit, an overfit to the search's draws.

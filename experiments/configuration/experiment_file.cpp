@@ -122,7 +122,7 @@ VirtualProfilometer read_measurement(TomlTable table) {
   instrument.rotation = Angle::from_degrees(table.number("rotation_deg", {-5.0, 5.0}, 0.7));
   instrument.tilt_x = table.number("tilt_x", {-0.1, 0.1}, 0.002);
   instrument.tilt_y = table.number("tilt_y", {-0.1, 0.1}, -0.001);
-  instrument.noise = Length::from_nm(table.number("noise_nm", {0.0, 1e4}, 20.0));
+  instrument.noise = Length::from_nm(table.number("noise_nm", {0.0, 1e4}, 10.0));
   instrument.missing_share = table.number("missing_share", {0.0, 0.5}, 0.001);
   instrument.seed = static_cast<std::uint64_t>(table.integer("seed", 0, INT64_MAX, 1));
   table.finish();

@@ -60,12 +60,12 @@ nlohmann::json covariance_table(const RunResults& results) {
     return TableRow{{name, Quantity{to_alpha * axes.rms_major, "1", {}}, Quantity{to_alpha * axes.rms_minor, "1", {}},
                      Quantity{axes.rotation.degrees(), "°", {}}}};
   };
-  TableRow fresh = row("fresh draws, gray levels as printed", results.design.on_fresh_draws);
+  TableRow fresh = row("fresh draws", results.design.on_fresh_draws);
   fresh.outcome = results.design.met ? Outcome::Met : Outcome::Missed;
   return table(
       {.title = "Slopes as Beckmann α", .span = Span::Half}, {"", "α_x", "α_y", "axis"},
-      {exact_row("target", results.target.slopes), row("draws that were searched on", results.design.on_search_draws),
-       fresh, exact_row("this one print", results.printed_slopes)});
+      {exact_row("target", results.target.slopes), row("search draws", results.design.on_search_draws),
+       fresh, exact_row("this print", results.printed_slopes)});
 }
 
 }  // namespace

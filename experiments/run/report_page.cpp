@@ -61,7 +61,7 @@ std::vector<KeyFigure> key_figures(const RunResults& results) {
   figures.push_back(
       {.name = "relative_l2 to the target",
        .quantity = quantity_of(first.printed_to_target.corrected),
-       .note = fmt::format("of it {:.3f} is the pattern's own shape", first.printed_to_own_lobe.corrected.value)});
+       .note = fmt::format("the pattern's own shape alone: {:.3f}", first.printed_to_own_lobe.corrected.value)});
   return figures;
 }
 

@@ -59,8 +59,9 @@ nlohmann::json bsdf_table(const RunResults& results) {
   }
   return table({.title = "BRDF: measured against predicted",
                 .caption = "`relative_l2` of the two traced maps, corrected for noise, and the floor that Monte Carlo "
-                           "noise alone would give."},
-               {"incidence", "relative_l2", "noise floor", "albedo predicted", "albedo measured"}, rows);
+                           "noise alone would give. The prediction has another draw of the printer's ground noise.",
+                .span = Span::Half},
+               {"light from", "relative_l2", "noise floor", "albedo predicted", "measured"}, rows);
 }
 
 }  // namespace

@@ -109,7 +109,8 @@ Json to_json(const Design& design) {
                  {"evaluations", design.search.evaluations},
                  {"outcome", design.search.outcome},
                  {"converged", design.search.converged}}},
-               {"fresh_seeds", design.fresh_seeds}};
+               {"fresh_seeds", design.fresh_seeds},
+               {"print_seed", design.print_seed}};
   for (const auto& c : design.fresh_covariances) json["fresh_covariances"].push_back({c.xx, c.yy, c.xy});
   for (const auto& variable : design.variables) json["variables"].push_back(variable_to_json(variable));
   for (const auto& step : design.history) json["history"].push_back(step_to_json(step));
@@ -129,6 +130,7 @@ Design design_from_json(const Json& json) {
   design.search = {step_from_json(search.at("best")), search.at("evaluations"), search.at("outcome"),
                    search.at("converged")};
   design.fresh_seeds = json.at("fresh_seeds").get<std::vector<std::uint64_t>>();
+  design.print_seed = json.at("print_seed");
   for (const Json& c : json.at("fresh_covariances")) design.fresh_covariances.push_back({c.at(0), c.at(1), c.at(2)});
   for (const Json& variable : json.at("variables")) design.variables.push_back(variable_from_json(variable));
   for (const Json& step : json.at("history")) design.history.push_back(step_from_json(step));

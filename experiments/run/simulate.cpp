@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "forward/scattering/path_tracing.h"
-
 namespace mezzotint {
 
 namespace {
@@ -32,19 +30,19 @@ double relative_error(const DirectionGrid& grid, const MapEstimate& map) {
   return power > 0.0 ? std::sqrt(noise / power) : 0.0;
 }
 
-Bsdf simulate(const HeightField& relief, const SimulationSpecification& simulation, const DirectionAngles& incidence,
+Bsdf simulate(PathTracer& relief, const SimulationSpecification& simulation, const DirectionAngles& incidence,
               std::uint64_t seed, const Progress& progress) {
   PathTracingOptions options{.incidence = incidence,
                              .grid = {simulation.resolution, simulation.resolution},
                              .material = simulation.material,
                              .samples = std::min(simulation.least_samples, simulation.most_samples),
                              .seed = 2 * seed};
-  Bsdf result = trace_bsdf(relief, options);
+  Bsdf result = relief.trace(options);
   const double pilot_error = relative_error(options.grid, result.reflection);
   if (pilot_error > simulation.tolerance && options.samples < simulation.most_samples) {
     options.samples = samples_for(pilot_error, simulation);
     options.seed = 2 * seed + 1;
-    result = trace_bsdf(relief, options, progress);
+    result = relief.trace(options, progress);
   }
   result.provenance["relative_standard_error"] = fmt::format("{:.6g}", relative_error(options.grid, result.reflection));
   return result;

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint64_t print_seed_offset = std::uint64_t{1} << 52;
 
 GrayImage gray_of_patch(const Experiment& experiment, const Design& design) {
-  const PatternInstance instance = draw_instance(design.pattern, design.fresh_seeds.front());
+  const PatternInstance instance = draw_instance(design.pattern, design.print_seed);
   const HeightField heights = pixel_heights(instance, experiment.printer, experiment.patch.pixels);
   return quantize(expose(heights, experiment.printer).image, experiment.printer);
 }
@@ -29,7 +29,7 @@ std::vector<std::string> run_print(const StageContext& context) {
   const ProcessOptions process{.subsamples = experiment.patch.subsamples, .surround = Surround::Mirror};
   write_gwy(inner_patch(print_layer(gray, experiment.printer, process), experiment), "design", {},
             context.folder / "design.gwy");
-  const PrintedTexture texture(experiment.printer, experiment.patch, {design.fresh_seeds.front()});
+  const PrintedTexture texture(experiment.printer, experiment.patch, {design.print_seed});
   write_gwy(inner_patch(texture.print(design.pattern, 0, GrayLevels::Quantized), experiment), "predicted", {},
             context.folder / "predicted.gwy");
 

@@ -34,6 +34,7 @@ std::vector<std::string> run_scatter(const StageContext& context) {
   const auto total = static_cast<double>(list.size() * simulation.incidences.size());
   std::vector<std::string> outputs;
   for (const auto& [name, field] : list) {
+    PathTracer tracer(field);
     for (std::size_t i = 0; i < simulation.incidences.size(); ++i) {
       const auto done = static_cast<double>(outputs.size());
       const std::string note = fmt::format("BSDF {} of {:.0f}: {}", outputs.size() + 1, total, name);
@@ -44,7 +45,7 @@ std::vector<std::string> run_scatter(const StageContext& context) {
       outputs.push_back(fmt::format("bsdf_{}_{}.exr", name, i));
       // A seed of its own for every map: their errors must be independent.
       const std::uint64_t seed = context.experiment.search.seed * 1000 + outputs.size();
-      write_exr(simulate(field, simulation, simulation.incidences[i], seed, inner), context.folder / outputs.back());
+      write_exr(simulate(tracer, simulation, simulation.incidences[i], seed, inner), context.folder / outputs.back());
     }
   }
   return outputs;

@@ -29,7 +29,7 @@ std::vector<std::string> run_search(const StageContext& context) {
   const Target target = target_from_json(read_json(context.folder / "target.json"));
   const Design design = find_design(problem_of(context.experiment, target), context.progress);
   write_json(to_json(design), context.folder / "design.json");
-  const Pattern drawn = draw_instance(design.pattern, design.fresh_seeds.front()).pattern;
+  const Pattern drawn = draw_instance(design.pattern, design.print_seed).pattern;
   write_file(context.folder / "pattern.toml",
              pattern_file_text({drawn, patch_grid(context.experiment)},
                                "The design of \"" + context.experiment.title +

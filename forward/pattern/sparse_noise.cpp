@@ -78,6 +78,13 @@ NoisePlane::NoisePlane(std::uint64_t seed, CellHash hash, double z, const NoiseB
   }
 }
 
+void NoisePlane::add_impulse(double x, double y, double headroom, double weight) {
+  x_.push_back(static_cast<float>(x));
+  y_.push_back(static_cast<float>(y));
+  headroom_.push_back(static_cast<float>(headroom));
+  weight_.push_back(static_cast<float>(weight));
+}
+
 // Both layers of cells that reach the plane, without the impulses that do not.
 void NoisePlane::gather_cell(std::uint64_t seed, CellHash hash, double z, std::int64_t column, std::int64_t row) {
   const RandomStream stream(seed, RandomPurpose::PatternImpulse);
@@ -90,13 +97,25 @@ void NoisePlane::gather_cell(std::uint64_t seed, CellHash hash, double z, std::i
       const double dz = static_cast<double>(cell.z) + at.z - z;
       const double headroom = 1.0 - 4.0 * dz * dz;
       if (headroom <= 0.0) continue;
-      x_.push_back(static_cast<float>(at.x));
-      y_.push_back(static_cast<float>(at.y));
-      headroom_.push_back(static_cast<float>(headroom));
-      weight_.push_back(static_cast<float>(at.weight));
+      add_impulse(at.x, at.y, headroom, at.weight);
     }
   }
+  while ((x_.size() - begin) % lanes != 0) add_impulse(0.0, 0.0, 0.0, 0.0);
   cells_.push_back({begin, x_.size()});
+}
+
+double NoisePlane::cell_sum(const CellRange& cell, float px, float py) const {
+  std::array<float, lanes> sums{};
+  for (std::size_t i = cell.begin; i < cell.end; i += lanes) {
+    for (std::size_t k = 0; k < lanes; ++k) {
+      const float dx = x_[i + k] - px, dy = y_[i + k] - py;
+      const float falloff = std::max(0.0F, headroom_[i + k] - 4.0F * (dx * dx + dy * dy));
+      sums[k] += weight_[i + k] * falloff * falloff * falloff;
+    }
+  }
+  double sum = 0.0;
+  for (const float lane : sums) sum += static_cast<double>(lane);
+  return sum;
 }
 
 double NoisePlane::operator()(double x, double y) const {
@@ -109,13 +128,7 @@ double NoisePlane::operator()(double x, double y) const {
     // Relative to the cell's corner, where float holds its digits however far the cell is.
     const auto px = static_cast<float>(x - static_cast<double>(column));
     const auto py = static_cast<float>(y - static_cast<double>(row));
-    std::array<float, 4> lanes{};
-    for (std::size_t i = cell.begin; i < cell.end; ++i) {
-      const float dx = x_[i] - px, dy = y_[i] - py;
-      const float falloff = std::max(0.0F, headroom_[i] - 4.0F * (dx * dx + dy * dy));
-      lanes[i & 3U] += weight_[i] * falloff * falloff * falloff;
-    }
-    sum += static_cast<double>(lanes[0]) + lanes[1] + lanes[2] + lanes[3];
+    sum += cell_sum(cell, px, py);
   }
   return normalisation() * sum;
 }

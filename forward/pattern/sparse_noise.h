@@ -48,6 +48,11 @@ private:
   struct CellRange {
     std::size_t begin, end;
   };
+  /// A cell's impulses are padded with weightless ones to whole groups of so many, for the vector unit.
+  static constexpr std::size_t lanes = 8;
+
+  void add_impulse(double x, double y, double headroom, double weight);
+  [[nodiscard]] double cell_sum(const CellRange& cell, float px, float py) const;
   void gather_cell(std::uint64_t seed, CellHash hash, double z, std::int64_t column, std::int64_t row);
 
   std::int64_t first_column_ = 0, first_row_ = 0;

@@ -26,6 +26,7 @@ namespace {
 constexpr std::uint64_t paths_per_slice = std::uint64_t{1} << 14;
 
 void require_valid(const PathTracingOptions& options) {
+  mezzotint::require_valid(options.grid);
   const double theta = options.incidence.theta.radians();
   require(theta >= 0.0 && theta < 0.5 * std::numbers::pi && std::isfinite(options.incidence.phi.radians()),
           "the light must come from above: theta from 0 up to, but not including, 90°");
@@ -144,15 +145,25 @@ Provenance provenance(const PathTracingOptions& options, const Statistics& stati
 
 }  // namespace
 
-Bsdf trace_bsdf(const HeightField& field, const PathTracingOptions& options, const Progress& progress) {
+struct PathTracer::Scene {
+  explicit Scene(const HeightField& field) : tile(field), triangles(tile) {}
+  PeriodicTile tile;
+  ReliefScene triangles;
+  bool has_normals = false;
+};
+
+PathTracer::PathTracer(const HeightField& field) : scene_(std::make_unique<Scene>(field)) {}
+PathTracer::~PathTracer() = default;
+
+Bsdf PathTracer::trace(const PathTracingOptions& options, const Progress& progress) {
   require_valid(options);
-  (void)projected_solid_angles(options.grid);  // refuses a bad grid before the tree is built
-  PeriodicTile tile(field);
-  if (options.normals == NormalKind::Interpolated) tile.prepare_normals();
-  const IncidentLight light(tile, options, strata_bits(options));
-  report(progress, "trace", 0.0, "building the tree of triangles");
-  const ReliefScene scene(tile);
-  const Statistics statistics = walk_all(PathWalker(tile, scene, options), light, options, progress);
+  if (options.normals == NormalKind::Interpolated && !scene_->has_normals) {
+    scene_->tile.prepare_normals();
+    scene_->has_normals = true;
+  }
+  const IncidentLight light(scene_->tile, options, strata_bits(options));
+  const Statistics statistics =
+      walk_all(PathWalker(scene_->tile, scene_->triangles, options), light, options, progress);
 
   Bsdf bsdf;
   bsdf.incidence = options.incidence;
@@ -168,6 +179,12 @@ Bsdf trace_bsdf(const HeightField& field, const PathTracingOptions& options, con
   bsdf.transmission = statistics.transmitted.estimate(scale);
   bsdf.provenance = provenance(options, statistics, options.batches * light.rays_per_batch());
   return bsdf;
+}
+
+Bsdf trace_bsdf(const HeightField& field, const PathTracingOptions& options, const Progress& progress) {
+  require_valid(options);  // before the tree is built
+  report(progress, "trace", 0.0, "building the tree of triangles");
+  return PathTracer(field).trace(options, progress);
 }
 
 }  // namespace mezzotint

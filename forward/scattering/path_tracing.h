@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "forward/base/progress.h"
 #include "forward/optics/bsdf.h"
@@ -60,7 +61,22 @@ struct PathTracingOptions {
 /// Bits     the same for the same options and field with any number of threads.
 /// Source   Frisvad 2019, slides "BRDF measurement"; the weight is corrected (the slides' one multiplies by
 ///          (ω_s·m)/cosθ_i, which belongs to points uniform on the microsurface).
-[[nodiscard]] Bsdf trace_bsdf(const HeightField& field, const PathTracingOptions& options,
-                              const Progress& progress = {});
+class PathTracer {
+public:
+  /// Builds the tree of triangles, once for all directions of the light.
+  explicit PathTracer(const HeightField& field);
+  ~PathTracer();
+  PathTracer(const PathTracer&) = delete;
+  PathTracer& operator=(const PathTracer&) = delete;
+
+  [[nodiscard]] Bsdf trace(const PathTracingOptions& options, const Progress& progress = {});
+
+private:
+  struct Scene;
+  std::unique_ptr<Scene> scene_;
+};
+
+/// One direction of the light: a PathTracer that is used once.
+[[nodiscard]] Bsdf trace_bsdf(const HeightField& field, const PathTracingOptions& options, const Progress& progress = {});
 
 }  // namespace mezzotint

@@ -89,10 +89,11 @@ double movement_um(const FitVector& step) { return step.head<3>().cwiseAbs().sum
 SampleSteps steps_for(const Grid& grid, double most) {
   SampleSteps steps;
   const auto left = [&] {
-    return static_cast<double>((grid.columns + steps.x - 1) / steps.x) *
-           static_cast<double>((grid.rows + steps.y - 1) / steps.y);
+    const std::size_t columns = (grid.columns + steps.x - 1) / steps.x;
+    const std::size_t rows = (grid.rows + steps.y - 1) / steps.y;
+    return columns * rows;
   };
-  while (left() > most) ++(steps.x < steps.y ? steps.x : steps.y);
+  while (static_cast<double>(left()) > most) ++(steps.x < steps.y ? steps.x : steps.y);
   return steps;
 }
 

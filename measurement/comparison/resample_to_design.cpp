@@ -28,8 +28,10 @@ HeightField in_design_frame(const HeightField& design, const HeightField& measur
   const HeightField seen = as_seen_by_design(measured, grid);
   std::vector<float> heights_um(grid.size());
   for (std::size_t k = 0; k < heights_um.size(); ++k) {
-    const FieldPoint point{static_cast<double>(k % grid.columns) * grid.pitch_x.um(),
-                           static_cast<double>(k / grid.columns) * grid.pitch_y.um()};
+    const std::size_t column = k % grid.columns;
+    const std::size_t row = k / grid.columns;
+    const FieldPoint point{static_cast<double>(column) * grid.pitch_x.um(),
+                           static_cast<double>(row) * grid.pitch_y.um()};
     heights_um[k] = static_cast<float>(height_um_at(seen, placement.to_measured(point)));
   }
   return {grid, Continuation::Mirrored, std::move(heights_um), design.datum()};

@@ -116,8 +116,10 @@ HeightField measure_virtually(const HeightField& relief, const VirtualProfilomet
   const RandomStream random(instrument.seed, RandomPurpose::InstrumentNoise);
   std::vector<float> heights_um(grid.size());
   for (std::size_t k = 0; k < heights_um.size(); ++k) {
-    const FieldPoint seen{static_cast<double>(k % grid.columns) * instrument.pitch.um(),
-                          static_cast<double>(k / grid.columns) * instrument.pitch.um()};
+    const std::size_t column = k % grid.columns;
+    const std::size_t row = k / grid.columns;
+    const FieldPoint seen{static_cast<double>(column) * instrument.pitch.um(),
+                          static_cast<double>(row) * instrument.pitch.um()};
     double height_um = placed.pixel_um(seen, instrument.pitch.um(), across);
     height_um += instrument.tilt_x * (seen.x_um - placed.middle().x_um);
     height_um += instrument.tilt_y * (seen.y_um - placed.middle().y_um);

@@ -11,7 +11,10 @@ Design some_design() {
   Design design{.pattern = Noise{.scale = 61.7_um, .stretch = 1.0 / 3.0 + 1.0, .direction = 31.1_deg, .seed = 77}};
   design.variables = {{"scale_um", 30.2, 400.0, 90.1, true}};
   design.history = {{{90.1}, 0.1 + 0.2}, {{61.7}, std::nan("")}};
-  design.search = {{{61.7}, 1e-17}, 2, "converged", true};
+  design.search.best.values = {61.7};
+  design.search.best.objective = 1e-17;
+  design.search.evaluations = 2;
+  design.search.outcome = "converged";
   design.fresh_covariances = {{0.1, 0.2, 0.3}, {0.4, 0.5, -0.6}};
   design.fresh_seeds = {1500, 1501};
   design.warnings = {"µm \"quoted\""};

@@ -1,6 +1,6 @@
 // Numbers as the page writes them: the standard error decides the digits.
 import assert from 'node:assert/strict';
-import { estimate, plain, quantityText } from '../../../experiments/report/page/lib/number.js';
+import { estimate, plain, quantityText } from '../../../../experiments/report/page/lib/number.js';
 
 const spaced = (text) => text.replace(/[\u00a0\u202f\u2009]/g, ' ');
 
