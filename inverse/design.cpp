@@ -61,9 +61,9 @@ void warn_of_pixels(const DesignProblem& problem, Design& design) {
     design.warnings.push_back(fmt::format(
         "the pattern's shortest length is {:.1f} pixels; below 4 the pixel grid itself shapes the relief", pixels));
   }
-  const Exposure exposure = expose(
-      pixel_heights(draw_instance(design.pattern, design.print_seed), problem.printer, problem.patch.pixels),
-      problem.printer);
+  const Exposure exposure =
+      expose(pixel_heights(draw_instance(design.pattern, design.print_seed), problem.printer, problem.patch.pixels),
+             problem.printer);
   const double share = static_cast<double>(exposure.saturated) / static_cast<double>(exposure.image.values.size());
   if (share > 0.0) {
     design.warnings.push_back(fmt::format(
@@ -85,6 +85,7 @@ void warn_of_bounds(Design& design) {
 }
 
 void warn_of_overfit(const DesignProblem& problem, Design& design) {
+  if (problem.lobe) return;  // the two figures are of different kinds
   const double held_out = covariance_distance(mean_of(design.fresh_covariances).mean, problem.target);
   const double noise = 2.0 * std::pow(design.on_fresh_draws.rms_major_error / design.on_fresh_draws.axes.rms_major, 2) +
                        2.0 * std::pow(design.on_fresh_draws.rms_minor_error / design.on_fresh_draws.axes.rms_minor, 2);
@@ -96,7 +97,9 @@ void warn_of_overfit(const DesignProblem& problem, Design& design) {
 }
 
 // Every draw is off by its own chance; the judgement is on all of them, but one has to be printed.
-std::uint64_t closest_draw(const Target& target, const Design& design) {
+std::uint64_t closest_draw(const DesignProblem& problem, const Design& design) {
+  Target target = problem.target;
+  if (problem.lobe) target.slopes = design.on_fresh_draws.axes;
   std::size_t best = 0;
   for (std::size_t i = 1; i < design.fresh_seeds.size(); ++i) {
     const auto distance = [&](std::size_t k) { return covariance_distance(design.fresh_covariances[k], target); };
@@ -105,10 +108,15 @@ std::uint64_t closest_draw(const Target& target, const Design& design) {
   return design.fresh_seeds[best];
 }
 
+double mean_lobe_error(const PrintedTexture& texture, const Pattern& pattern, const LobeGoal& lobe) {
+  return cube_root_error(printed_lobes(texture, pattern, GrayLevels::Continuous, lobe), lobe).value;
+}
+
 MinimizeResult run_search(const DesignProblem& problem, Design& design, const Progress& progress) {
   const PrintedTexture texture(problem.printer, problem.patch, search_seeds(problem));
   const auto objective = [&](const std::vector<double>& values) {
     const Pattern pattern = with_values(problem.pattern, design.variables, values);
+    if (problem.lobe) return mean_lobe_error(texture, pattern, *problem.lobe);
     return covariance_distance(mean_of(texture.slope_covariances(pattern, GrayLevels::Continuous)).mean,
                                problem.target);
   };
@@ -157,9 +165,14 @@ Design find_design(const DesignProblem& problem, const Progress& progress) {
   const PrintedTexture fresh(problem.printer, problem.patch, design.fresh_seeds);
   design.fresh_covariances = fresh.slope_covariances(design.pattern, GrayLevels::Quantized);
   design.on_fresh_draws = estimate_axes(design.fresh_covariances);
-  design.print_seed = closest_draw(problem.target, design);
+  design.print_seed = closest_draw(problem, design);
   design.fresh_error = target_error(mean_of(design.fresh_covariances).mean, problem.target);
   design.met = is_met(design.fresh_error, problem.target);
+  if (problem.lobe) {
+    const auto lobes = printed_lobes(fresh, design.pattern, GrayLevels::Quantized, *problem.lobe);
+    design.fresh_lobe_error = cube_root_error(lobes, *problem.lobe);
+    design.met = design.fresh_lobe_error->value <= problem.target.tolerance;
+  }
   warn_of_pixels(problem, design);
   warn_of_bounds(design);
   warn_of_overfit(problem, design);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "forward/base/progress.h"
+#include "inverse/lobe_goal.h"
 #include "inverse/minimize.h"
 #include "inverse/printed_texture.h"
 #include "inverse/target.h"
@@ -30,6 +31,9 @@ struct DesignProblem {
   std::size_t search_draws = 8;  ///< draws whose mean covariance the search sees, the same ones at every step
   std::size_t fresh_draws = 12;  ///< other draws, on which the result is judged
   MinimizeOptions search;
+  /// Given: the search lowers the cube-root error of the printed lobe, and `target.tolerance` is for that. Left
+  /// out: it lowers the distance of the slope covariances, and the tolerance is for their variances.
+  std::optional<LobeGoal> lobe;
 };
 
 /// What was found.
@@ -42,18 +46,21 @@ struct Design {
   SlopeAxesEstimate on_fresh_draws;   ///< quantised to the printer's levels, draws that the search never saw
   std::vector<SlopeCovariance> fresh_covariances;
   std::vector<std::uint64_t> fresh_seeds;
-  std::uint64_t print_seed = 0;  ///< the fresh draw whose own covariance is closest to the target: the one to print
+  /// The fresh draw to print: its own covariance is closest to the target's (with a lobe: to the mean's).
+  std::uint64_t print_seed = 0;
   TargetError fresh_error;
+  std::optional<Estimate> fresh_lobe_error;  ///< cube-root error on the fresh draws, where a lobe is the goal
   bool met = false;
   /// In words: saturated pixels, wavelengths under 4 pixels, a bound that was hit, an overfit to the search's draws.
   std::vector<std::string> warnings;
 };
 
-/// The parameters of the printed pattern whose slope covariance comes closest to the target's.
+/// The parameters of the pattern whose print comes closest to the target.
 ///
-/// Method   NLopt on `covariance_distance` of the mean covariance of `search_draws` printed patches: pattern →
-///          gray → light → cure height → ground, with common random numbers and continuous gray levels; the
-///          best point is evaluated again on `fresh_draws` other draws with the printer's gray levels.
+/// Method   NLopt on `covariance_distance` of the mean covariance (or the cube-root error of the mean lobe) of
+///          `search_draws` printed patches: pattern → gray → light → cure height → ground, with common random
+///          numbers and continuous gray levels; the best point is evaluated again on `fresh_draws` other draws
+///          with the printer's gray levels.
 /// @throws InvalidInput for an impossible problem (unknown parameter, bounds outside of its range).
 [[nodiscard]] Design find_design(const DesignProblem& problem, const Progress& progress = {});
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 
 #include "forward/optics/microfacet.h"
@@ -14,7 +15,9 @@ struct Target {
   std::string kind;              ///< "beckmann", "anisotropy", "scan": what the user named
   SlopeAxes slopes;              ///< wanted RMS slopes along their own axes
   bool rotation_matters = true;  ///< false for a round lobe, or where the user left the direction open
-  double tolerance = 0.05;       ///< largest relative error of either variance of the slope covariance
+  /// Largest relative error of either variance of the slope covariance; of a lobe: largest cube-root error.
+  /// Infinite: none was stated, nothing is judged.
+  double tolerance = 0.05;
   Angle rotation_tolerance = Angle::from_degrees(2.0);
 };
 
@@ -29,6 +32,8 @@ struct Target {
 
 /// The Beckmann lobe of given slopes.
 [[nodiscard]] BeckmannLobe lobe_of(const SlopeAxes& slopes);
+
+[[nodiscard]] inline bool is_judged(const Target& target) { return std::isfinite(target.tolerance); }
 
 /// How far a slope covariance is from a target.
 struct TargetError {

@@ -57,6 +57,12 @@ Bsdf from_moments(const HeightField& relief, const SimulationSpecification& simu
   return bsdf;
 }
 
+Bsdf simulate_once(const HeightField& relief, const SimulationSpecification& simulation,
+                   const DirectionAngles& incidence, std::uint64_t seed, const Progress& progress) {
+  PathTracer tracer(relief);
+  return simulate(tracer, simulation, incidence, seed, progress);
+}
+
 Bsdf compute(const BsdfArguments& arguments, const CommandContext& context) {
   const SurfaceFile surface = read_surface(arguments.input);
   SimulationSpecification simulation;
@@ -69,7 +75,7 @@ Bsdf compute(const BsdfArguments& arguments, const CommandContext& context) {
   Bsdf bsdf = arguments.model == "moments" ? from_moments(surface.field, simulation, incidence)
               : arguments.samples > 0.0
                   ? trace_samples(surface.field, arguments, simulation, incidence, seed, context.progress)
-                  : simulate(surface.field, simulation, incidence, seed, context.progress);
+                  : simulate_once(surface.field, simulation, incidence, seed, context.progress);
   bsdf.provenance["program"] = std::string("mezzotint ") + program_version;
   bsdf.provenance["source"] = std::filesystem::path(arguments.input).filename().string();
   return bsdf;

@@ -22,12 +22,7 @@ Experiment read_with_seed(const RunArguments& arguments, const CommonOptions& co
 }
 
 std::string in_words(const RunOutcome& outcome) {
-  const auto& error = outcome.summary.at("fresh_draws_error");
-  return fmt::format(
-      "target {}: slope variances off by {:+.2f} % and {:+.2f} % on fresh draws, axis by {:.2f}°\nreport: {}",
-      outcome.met ? "met" : "MISSED", 100.0 * error.at("relative_variance_major").get<double>(),
-      100.0 * error.at("relative_variance_minor").get<double>(), error.at("rotation_deg").get<double>(),
-      (outcome.folder / "report.html").string());
+  return outcome.verdict + "\nreport: " + (outcome.folder / "report.html").string();
 }
 
 void add_arguments(CLI::App& app, RunArguments& arguments) {
@@ -36,7 +31,6 @@ void add_arguments(CLI::App& app, RunArguments& arguments) {
                  "Folder for the results (default: runs/NAME); an earlier run in it becomes FOLDER.previous");
   app.add_option("--set", arguments.settings,
                  "Change a setting: --set target.alpha_x=0.3; paths are relative to the working folder")
-      ->expected(1)
       ->allow_extra_args(false);
   app.add_flag("--resume", arguments.resume, "Go on after the last finished stage");
 }
@@ -66,10 +60,9 @@ Command add_design(CLI::App& program) {
             const std::string folder = arguments->out.empty() ? "runs/" + experiment.name : arguments->out;
             const RunOutcome outcome = run_experiment(
                 experiment, {.folder = folder, .resume = arguments->resume, .last_stage = "search"}, context.progress);
-            context.print(
-                outcome.summary,
-                fmt::format("target {}\ndesign: {}\npattern: {}", outcome.met ? "met" : "MISSED",
-                            (outcome.folder / "design.json").string(), (outcome.folder / "pattern.toml").string()));
+            context.print(outcome.summary, fmt::format("{}\ndesign: {}\npattern: {}", outcome.verdict,
+                                                       (outcome.folder / "design.json").string(),
+                                                       (outcome.folder / "pattern.toml").string()));
             return outcome.met ? ExitStatus::Done : ExitStatus::ToleranceMissed;
           }};
 }

@@ -141,9 +141,7 @@ Command add_synthesize(CLI::App& program) {
   auto arguments = std::make_shared<Arguments>();
   app->add_option("PATTERN", arguments->input, "Pattern file (TOML); examples under experiments/patterns")->required();
   app->add_option("--output,-o", arguments->output, "File to write (.gwy or .obj)")->required();
-  app->add_option("--set", arguments->settings, "Change a setting: --set pattern.scale_um=80")
-      ->expected(1)
-      ->allow_extra_args(false);
+  app->add_option("--set", arguments->settings, "Change a setting: --set pattern.scale_um=80")->allow_extra_args(false);
   return {app, [arguments](const CommandContext& context) {
             auto settings = arguments->settings;
             if (context.common.seed >= 0) settings.push_back("pattern.seed=" + std::to_string(context.common.seed));

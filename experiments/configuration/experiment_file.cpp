@@ -30,7 +30,7 @@ TargetSpecification read_target(TomlTable table) {
     target.scan = table.file("scan");
     target.outliers = table.number("outliers", {0.0, 100.0}, target.outliers);
   }
-  target.tolerance = table.number("tolerance", {1e-6, 10.0}, target.tolerance);
+  if (table.has("tolerance")) target.tolerance = table.number("tolerance", {1e-6, 10.0});
   target.rotation_tolerance = Angle::from_degrees(table.number("rotation_tolerance_deg", {1e-3, 90.0}, 2.0));
   table.finish();
   return target;
@@ -81,6 +81,14 @@ void read_search(TomlTable table, Experiment& experiment) {
                                {"LN_BOBYQA", "LN_SBPLX", "LN_COBYLA", "LN_NELDERMEAD", "LN_PRAXIS", "LN_NEWUOA_BOUND",
                                 "GN_DIRECT_L", "GN_CRS2_LM", "GN_ISRES", "GN_ESCH", "GN_AGS", "G_MLSL_LDS", "LD_LBFGS",
                                 "LD_SLSQP", "LD_MMA", "LD_CCSAQ", "LD_TNEWTON", "LD_VAR2"}));
+  }
+  const bool is_scan = experiment.target.kind == "scan";
+  const std::string objective = table.choice("objective", {"slope_covariance", "brdf_cube_root"},
+                                             is_scan ? "brdf_cube_root" : "slope_covariance");
+  experiment.objective =
+      objective == "brdf_cube_root" ? SearchObjective::LobeCubeRoot : SearchObjective::SlopeCovariance;
+  if (experiment.target.kind == "anisotropy" && objective == "brdf_cube_root") {
+    table.complain("objective", "an anisotropy alone names no lobe; its objective is \"slope_covariance\"");
   }
   search.max_evaluations = static_cast<int>(table.integer("max_evaluations", 1, 1'000'000, search.max_evaluations));
   search.relative_tolerance = table.number("relative_tolerance", {1e-12, 0.5}, search.relative_tolerance);

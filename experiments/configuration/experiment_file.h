@@ -20,8 +20,14 @@ struct TargetSpecification {
   double ratio = 1.0, mean_alpha = 0.0;  ///< anisotropy
   std::filesystem::path scan;            ///< scan
   double outliers = 5.0;                 ///< samples beyond that many standard deviations are taken out; 0: none
-  double tolerance = 0.05;
+  std::optional<double> tolerance;  ///< left out: 0.05 of the slopes' variances; a lobe is then not judged
   Angle rotation_tolerance = Angle::from_degrees(2.0);
+};
+
+/// `[search] objective`: what the search lowers, and what `[target] tolerance` is for.
+enum class SearchObjective {
+  SlopeCovariance,  ///< "slope_covariance": the variances of the slopes along both axes, and their direction
+  LobeCubeRoot      ///< "brdf_cube_root": the cosine-weighted cube-root error of the reflection maps
 };
 
 /// `[simulation]`: how BSDFs are computed.
@@ -54,6 +60,7 @@ struct Experiment {
   SimulationSpecification simulation;
   std::size_t search_draws = 8;
   std::size_t fresh_draws = 12;
+  SearchObjective objective = SearchObjective::SlopeCovariance;
   MinimizeOptions search;
   PrintSpecification print;
   VirtualProfilometer measurement;

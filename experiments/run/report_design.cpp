@@ -38,7 +38,8 @@ nlohmann::json history_chart(const RunResults& results) {
       {.title = "Search history",
        .caption = fmt::format("{} evaluations; {}.", results.design.search.evaluations, results.design.search.outcome),
        .span = Span::Half},
-      objectives, {}, "distance of the slope covariances");
+      objectives, {},
+      results.design.fresh_lobe_error ? "cube-root error of the lobe" : "distance of the slope covariances");
 }
 
 nlohmann::json ellipse_chart(const RunResults& results) {
@@ -62,10 +63,9 @@ nlohmann::json covariance_table(const RunResults& results) {
   };
   TableRow fresh = row("fresh draws", results.design.on_fresh_draws);
   fresh.outcome = results.design.met ? Outcome::Met : Outcome::Missed;
-  return table(
-      {.title = "Slopes as Beckmann α", .span = Span::Half}, {"", "α_x", "α_y", "axis"},
-      {exact_row("target", results.target.slopes), row("search draws", results.design.on_search_draws),
-       fresh, exact_row("this print", results.printed_slopes)});
+  return table({.title = "Slopes as Beckmann α", .span = Span::Half}, {"", "α_x", "α_y", "axis"},
+               {exact_row("target", results.target.slopes), row("search draws", results.design.on_search_draws), fresh,
+                exact_row("this print", results.printed_slopes)});
 }
 
 }  // namespace
@@ -74,10 +74,12 @@ Section design_section(const Experiment& experiment, const RunResults& results) 
   Section section{
       .title = "The design",
       .text = fmt::format(
-          "`{}` changed the free parameters of the pattern until the slope covariance of the *printed* relief "
-          "matched: pattern, gray levels, spread of the light, cure curve and ground noise are all in the loop. The "
+          "`{}` changed the free parameters of the pattern until the {} of the *printed* relief matched: pattern, gray "
+          "levels, spread of the light, cure curve and ground noise are all in the loop. The "
           "search saw the same {} random draws at every step; the result is judged on {} others.",
-          experiment.search.algorithm, experiment.search_draws, experiment.fresh_draws)};
+          experiment.search.algorithm,
+          results.design.fresh_lobe_error ? "reflection maps (single reflection, cube-rooted)" : "slope covariance",
+          experiment.search_draws, experiment.fresh_draws)};
   if (!experiment.pattern.reason.empty()) section.text += "\n\nPattern: " + experiment.pattern.reason + ".";
   section.components = {parameter_table(results), history_chart(results), ellipse_chart(results),
                         covariance_table(results)};

@@ -43,13 +43,20 @@ nlohmann::json difference_table(const RunResults& results) {
 }  // namespace
 
 Section lobe_section(const Experiment& experiment, const RunResults& results) {
-  const bool is_scan = experiment.target.kind == "scan";
-  Section section{
-      .title = "The lobe",
-      .text = is_scan
-                  ? "The reflectance of the scan, traced, beside that of the printed relief, on one colour scale."
-                  : "The reflectance that was asked for, beside that of the printed relief, traced through its full "
-                    "geometry, on one colour scale."};
+  Section section{.title = "The lobe",
+                  .text =
+                      "The reflectance that was asked for, beside that of the printed relief, traced through its "
+                      "full geometry, on one colour scale."};
+  const auto& own = results.incidences.front().target_to_its_lobe;
+  if (experiment.target.kind == "scan" && own) {
+    section.text = fmt::format(
+        "The reflectance of the scan, traced, beside that of the printed relief, on one colour scale.\n\nThe scan "
+        "itself is "
+        "no Beckmann lobe: its `relative_l2` to that of its own slopes is {:.3f} ± {:.3f}. What the pattern cannot "
+        "show "
+        "of it stays as a difference here.",
+        own->corrected.value, own->corrected.standard_error);
+  }
   for (const auto& r : results.incidences) {
     section.components.push_back(direction_maps({.title = "BRDF, " + in_degrees(r.incidence)}, maps_of(r)));
   }

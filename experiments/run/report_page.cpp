@@ -23,45 +23,71 @@ std::string target_in_words(const Target& target) {
 }
 
 Verdict verdict(const RunResults& results) {
-  const TargetError& error = results.design.fresh_error;
-  const std::string figures = fmt::format(
-      "on {} draws that the search never saw, the printed slopes' variances are off by {:+.1f} % and {:+.1f} % "
-      "({:.0f} % allowed){}",
-      results.design.fresh_covariances.size(), 100.0 * error.variance_major, 100.0 * error.variance_minor,
-      100.0 * results.target.tolerance,
-      results.target.rotation_matters ? fmt::format(" and their axis by {:.2f}°", error.rotation.degrees()) : "");
-  return {results.design.met ? Outcome::Met : Outcome::Missed,
-          (results.design.met ? "Target met: " : "Target missed: ") + figures + "."};
+  const Outcome judged = results.design.met ? Outcome::Met : Outcome::Missed;
+  return {is_judged(results.target) ? judged : Outcome::Information, verdict_sentence(results.target, results.design)};
 }
 
-// α's tolerance is half that of the variance, to first order.
-KeyFigure alpha_figure(const char* name, double value, double error, double target, double variance_error,
-                       double tolerance) {
-  return {.name = name,
-          .quantity = {to_alpha * value, "1", to_alpha * error},
-          .outcome = std::abs(variance_error) <= tolerance ? Outcome::Met : Outcome::Missed,
-          .note = fmt::format("target {:.4g}", to_alpha * target)};
+// Slopes are judged where they are the goal, and shown where a lobe is.
+class SlopeFigures {
+public:
+  explicit SlopeFigures(const RunResults& results) : results_(results), judged_(!results.design.fresh_lobe_error) {}
+
+  [[nodiscard]] KeyFigure alpha(const char* name, double value, double error, double wanted,
+                                double variance_error) const {
+    KeyFigure figure{.name = name, .quantity = {to_alpha * value, "1", to_alpha * error}};
+    figure.outcome = outcome(std::abs(variance_error) <= results_.target.tolerance);
+    figure.note = fmt::format("target {:.4g}", to_alpha * wanted);
+    return figure;
+  }
+  [[nodiscard]] KeyFigure axis() const {
+    const SlopeAxesEstimate& found = results_.design.on_fresh_draws;
+    KeyFigure figure{.name = "axis of α_x"};
+    figure.quantity = {found.axes.rotation.degrees(), "°", found.rotation_error.degrees()};
+    figure.outcome = outcome(results_.design.fresh_error.rotation <= results_.target.rotation_tolerance);
+    figure.note = fmt::format("target {:.4g}°", results_.target.slopes.rotation.degrees());
+    return figure;
+  }
+
+private:
+  [[nodiscard]] Outcome outcome(bool is_met) const {
+    if (!judged_) return Outcome::Information;
+    return is_met ? Outcome::Met : Outcome::Missed;
+  }
+  const RunResults& results_;
+  bool judged_;
+};
+
+KeyFigure lobe_figure(const RunResults& results) {
+  const Design& design = results.design;
+  KeyFigure figure{.name = "cube-root error of the lobe"};
+  figure.quantity = quantity_of(*design.fresh_lobe_error);
+  if (is_judged(results.target)) {
+    figure.at_most = results.target.tolerance;
+    figure.outcome = design.met ? Outcome::Met : Outcome::Missed;
+  }
+  return figure;
+}
+
+KeyFigure l2_figure(const IncidenceResult& first) {
+  KeyFigure figure{.name = "relative_l2 to the target"};
+  figure.quantity = quantity_of(first.printed_to_target.corrected);
+  figure.note = fmt::format("the pattern's own shape alone: {:.3f}", first.printed_to_own_lobe.corrected.value);
+  return figure;
 }
 
 std::vector<KeyFigure> key_figures(const RunResults& results) {
   const SlopeAxesEstimate& found = results.design.on_fresh_draws;
-  const Target& target = results.target;
+  const SlopeAxes& wanted = results.target.slopes;
   const TargetError& error = results.design.fresh_error;
-  std::vector<KeyFigure> figures = {alpha_figure("printed α_x", found.axes.rms_major, found.rms_major_error,
-                                                 target.slopes.rms_major, error.variance_major, target.tolerance),
-                                    alpha_figure("printed α_y", found.axes.rms_minor, found.rms_minor_error,
-                                                 target.slopes.rms_minor, error.variance_minor, target.tolerance)};
-  if (target.rotation_matters) {
-    figures.push_back({.name = "axis of α_x",
-                       .quantity = {found.axes.rotation.degrees(), "°", found.rotation_error.degrees()},
-                       .outcome = error.rotation <= target.rotation_tolerance ? Outcome::Met : Outcome::Missed,
-                       .note = fmt::format("target {:.4g}°", target.slopes.rotation.degrees())});
-  }
-  const IncidenceResult& first = results.incidences.front();
+  const SlopeFigures slopes(results);
+  std::vector<KeyFigure> figures;
+  if (results.design.fresh_lobe_error) figures.push_back(lobe_figure(results));
   figures.push_back(
-      {.name = "relative_l2 to the target",
-       .quantity = quantity_of(first.printed_to_target.corrected),
-       .note = fmt::format("the pattern's own shape alone: {:.3f}", first.printed_to_own_lobe.corrected.value)});
+      slopes.alpha("printed α_x", found.axes.rms_major, found.rms_major_error, wanted.rms_major, error.variance_major));
+  figures.push_back(
+      slopes.alpha("printed α_y", found.axes.rms_minor, found.rms_minor_error, wanted.rms_minor, error.variance_minor));
+  if (results.target.rotation_matters) figures.push_back(slopes.axis());
+  figures.push_back(l2_figure(results.incidences.front()));
   return figures;
 }
 

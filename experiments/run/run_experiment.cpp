@@ -82,7 +82,9 @@ RunOutcome run_experiment(const Experiment& experiment, const RunOptions& option
   const auto design = design_from_json(read_json(folder / "design.json"));
   const auto summary_file = folder / "summary.json";
   const bool has_summary = std::filesystem::exists(summary_file);
-  return {folder.path(), design.met, has_summary ? read_json(summary_file) : to_json(design)};
+  const auto target = target_from_json(read_json(folder / "target.json"));
+  return {folder.path(), design.met, verdict_sentence(target, design),
+          has_summary ? read_json(summary_file) : to_json(design)};
 }
 
 }  // namespace mezzotint

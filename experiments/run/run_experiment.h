@@ -20,7 +20,8 @@ struct RunOptions {
 struct RunOutcome {
   std::filesystem::path folder;
   bool met = false;                ///< the target, within the tolerances that the file states
-  nlohmann::ordered_json summary;  ///< summary.json
+  std::string verdict;             ///< in one sentence
+  nlohmann::ordered_json summary;  ///< summary.json; design.json where the run ended before it
 };
 
 /// Runs an experiment stage by stage; each leaves its files in the run folder before the next begins.

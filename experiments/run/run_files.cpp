@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "forward/base/error.h"
 #include "forward/base/file_input.h"
 #include "forward/base/file_output.h"
@@ -82,7 +84,7 @@ Json to_json(const Target& target) {
   return {{"kind", target.kind},
           {"slopes", axes_to_json(target.slopes)},
           {"rotation_matters", target.rotation_matters},
-          {"tolerance", target.tolerance},
+          {"tolerance", is_judged(target) ? Json(target.tolerance) : Json(nullptr)},
           {"rotation_tolerance_rad", target.rotation_tolerance.radians()}};
 }
 
@@ -90,7 +92,7 @@ Target target_from_json(const Json& json) {
   return {.kind = json.at("kind"),
           .slopes = axes_from_json(json.at("slopes")),
           .rotation_matters = json.at("rotation_matters"),
-          .tolerance = json.at("tolerance"),
+          .tolerance = json.at("tolerance").is_null() ? HUGE_VAL : json["tolerance"].get<double>(),
           .rotation_tolerance = Angle::from_radians(json.at("rotation_tolerance_rad"))};
 }
 
@@ -111,6 +113,9 @@ Json to_json(const Design& design) {
                  {"converged", design.search.converged}}},
                {"fresh_seeds", design.fresh_seeds},
                {"print_seed", design.print_seed}};
+  if (design.fresh_lobe_error) {
+    json["fresh_lobe_error"] = {design.fresh_lobe_error->value, design.fresh_lobe_error->standard_error};
+  }
   for (const auto& c : design.fresh_covariances) json["fresh_covariances"].push_back({c.xx, c.yy, c.xy});
   for (const auto& variable : design.variables) json["variables"].push_back(variable_to_json(variable));
   for (const auto& step : design.history) json["history"].push_back(step_to_json(step));
@@ -126,6 +131,10 @@ Design design_from_json(const Json& json) {
   const Json& error = json.at("fresh_error");
   design.fresh_error = {error.at("variance_major"), error.at("variance_minor"),
                         Angle::from_radians(error.at("rotation_rad"))};
+  if (json.contains("fresh_lobe_error")) {
+    const Json& lobe = json["fresh_lobe_error"];
+    design.fresh_lobe_error = Estimate{lobe.at(0), lobe.at(1)};
+  }
   const Json& search = json.at("search");
   design.search = {step_from_json(search.at("best")), search.at("evaluations"), search.at("outcome"),
                    search.at("converged")};
@@ -150,6 +159,26 @@ Json to_json(const AreaRoughness& roughness) {
   return {{"Sa", roughness.Sa},   {"Sq", roughness.Sq},           {"Sz", roughness.Sz},
           {"Ssk", roughness.Ssk}, {"Sku", roughness.Sku},         {"Sdq", roughness.Sdq},
           {"Sdr", roughness.Sdr}, {"samples", roughness.samples}, {"missing", roughness.missing}};
+}
+
+std::string verdict_sentence(const Target& target, const Design& design) {
+  const char* verdict = !is_judged(target) ? "No tolerance stated" : design.met ? "Target met" : "Target missed";
+  const std::size_t draws = design.fresh_covariances.size();
+  if (design.fresh_lobe_error) {
+    const std::string allowed = is_judged(target) ? fmt::format(" ({:.3g} allowed)", target.tolerance) : "";
+    return fmt::format(
+        "{}: on {} draws that the search never saw, the printed lobe's cube-root error is {:.3f} ± {:.3f}{}.", verdict,
+        draws, design.fresh_lobe_error->value, design.fresh_lobe_error->standard_error, allowed);
+  }
+  const TargetError& error = design.fresh_error;
+  const std::string axis = target.rotation_matters
+                               ? fmt::format(", and their axis by {:.2f}° ({:.3g}° allowed)", error.rotation.degrees(),
+                                             target.rotation_tolerance.degrees())
+                               : "";
+  return fmt::format(
+      "{}: on {} draws that the search never saw, the printed slopes' variances are off by {:+.1f} % and "
+      "{:+.1f} % ({:.3g} % allowed){}.",
+      verdict, draws, 100.0 * error.variance_major, 100.0 * error.variance_minor, 100.0 * target.tolerance, axis);
 }
 
 Json read_json(const std::filesystem::path& path) {

@@ -19,6 +19,9 @@ namespace mezzotint {
 [[nodiscard]] Target target_from_json(const nlohmann::ordered_json& json);
 [[nodiscard]] Design design_from_json(const nlohmann::ordered_json& json);
 
+/// What a search came to, in one sentence, with its tolerance.
+[[nodiscard]] std::string verdict_sentence(const Target& target, const Design& design);
+
 /// @throws FileError for a file that is not JSON.
 [[nodiscard]] nlohmann::ordered_json read_json(const std::filesystem::path& path);
 void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);

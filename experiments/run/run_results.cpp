@@ -42,6 +42,7 @@ IncidenceResult load_incidence(const Experiment& experiment, const RunFolder& fo
   r.own_lobe = lobe(results.printed_slopes);
   r.printed_to_target = r.traced_target ? relative_l2(grid, r.printed.reflection, r.traced_target->reflection)
                                         : relative_l2(grid, r.printed.reflection, r.target_lobe);
+  if (r.traced_target) r.target_to_its_lobe = relative_l2(grid, r.traced_target->reflection, r.target_lobe);
   r.printed_to_own_lobe = relative_l2(grid, r.printed.reflection, r.own_lobe);
   r.own_lobe_to_target_lobe = relative_l2(grid, r.own_lobe, r.target_lobe);
   r.measured_to_predicted = relative_l2(grid, r.measured.reflection, r.predicted.reflection);
@@ -63,6 +64,10 @@ Json error_summary(const TargetError& error) {
           {"rotation_deg", error.rotation.degrees()}};
 }
 
+Json lobe_error_summary(const Design& design) {
+  return design.fresh_lobe_error ? Json(quantity_of(*design.fresh_lobe_error)) : Json(nullptr);
+}
+
 Json difference_summary(const MapDifference& difference) {
   return {{"relative_l2", quantity_of(difference.corrected)},
           {"relative_l2_with_noise", difference.plain},
@@ -74,6 +79,8 @@ Json incidence_summary(const IncidenceResult& r) {
           {"albedo_printed", quantity_of(r.printed.energy.reflected)},
           {"albedo_measured", quantity_of(r.measured.energy.reflected)},
           {"printed_to_target", difference_summary(r.printed_to_target)},
+          {"target_to_beckmann_of_its_own_slopes",
+           r.target_to_its_lobe ? difference_summary(*r.target_to_its_lobe) : Json(nullptr)},
           {"printed_to_beckmann_of_its_own_slopes", difference_summary(r.printed_to_own_lobe)},
           {"beckmann_of_its_own_slopes_to_target_lobe", {{"relative_l2", r.own_lobe_to_target_lobe}}},
           {"measured_to_predicted", difference_summary(r.measured_to_predicted)}};
@@ -108,14 +115,16 @@ nlohmann::ordered_json summarize(const Experiment& experiment, const RunResults&
   Json summary = {{"experiment", experiment.name},
                   {"program", std::string("mezzotint ") + program_version},
                   {"met", results.design.met},
+                  {"verdict", verdict_sentence(results.target, results.design)},
                   {"target",
                    {{"kind", results.target.kind},
                     {"alpha_x", to_alpha * results.target.slopes.rms_major},
                     {"alpha_y", to_alpha * results.target.slopes.rms_minor},
                     {"rotation_deg", results.target.slopes.rotation.degrees()},
-                    {"tolerance", results.target.tolerance}}},
+                    {"tolerance", to_json(results.target).at("tolerance")}}},
                   {"fresh_draws", slopes_summary(results.design.on_fresh_draws)},
                   {"fresh_draws_error", error_summary(results.design.fresh_error)},
+                  {"fresh_draws_cube_root_error", lobe_error_summary(results.design)},
                   {"this_print",
                    {{"alpha_x", to_alpha * results.printed_slopes.rms_major},
                     {"alpha_y", to_alpha * results.printed_slopes.rms_minor},

@@ -19,7 +19,8 @@ struct IncidenceResult {
   DirectionMap own_lobe;              ///< Beckmann lobe of the print's own slopes
   MapDifference printed_to_target;    ///< the traced target where there is one, else its lobe
   MapDifference printed_to_own_lobe;  ///< what the pattern's shape and multiple scattering add: it is no Beckmann lobe
-  double own_lobe_to_target_lobe = 0.0;  ///< what the slopes' errors alone would make of a Beckmann lobe
+  std::optional<MapDifference> target_to_its_lobe;  ///< the same of a scan
+  double own_lobe_to_target_lobe = 0.0;             ///< what the slopes' errors alone would make of a Beckmann lobe
   MapDifference measured_to_predicted;
 };
 

@@ -21,30 +21,7 @@ struct SlopeSums {
     xy += sx * sy;
     count += 1.0;
   }
-  void add(const SlopeSums& other) {
-    x += other.x;
-    y += other.y;
-    xx += other.xx;
-    yy += other.yy;
-    xy += other.xy;
-    count += other.count;
-  }
 };
-
-SlopeSums row_sums(const HeightField& field, std::size_t row, std::size_t next_row, std::size_t cells) {
-  const double per_x = 1.0 / field.grid().pitch_x.um();
-  const double per_y = 1.0 / field.grid().pitch_y.um();
-  SlopeSums sums;
-  for (std::size_t column = 0; column < cells; ++column) {
-    const std::size_t next = column + 1 == field.columns() ? 0 : column + 1;
-    const double z00 = field.at(column, row), z10 = field.at(next, row);
-    const double z01 = field.at(column, next_row), z11 = field.at(next, next_row);
-    if (std::isnan(z00 + z10 + z01 + z11)) continue;
-    sums.add((z10 - z00) * per_x, (z11 - z10) * per_y);
-    sums.add((z11 - z01) * per_x, (z01 - z00) * per_y);
-  }
-  return sums;
-}
 
 }  // namespace
 
@@ -64,12 +41,8 @@ SlopeCovariance covariance_of(const SlopeAxes& axes) {
 }
 
 SlopeCovariance slope_covariance(const HeightField& field) {
-  const std::size_t closing = field.periodic() ? 0 : 1;
   SlopeSums total;
-  for (std::size_t row = 0; row + closing < field.rows(); ++row) {
-    const std::size_t next_row = row + 1 == field.rows() ? 0 : row + 1;
-    total.add(row_sums(field, row, next_row, field.columns() - closing));
-  }
+  for_each_facet_slope(field, [&](double sx, double sy) { total.add(sx, sy); });
   require(total.count > 0.0, "no cell with four measured corners: the relief has no slopes");
   const double mean_x = total.x / total.count, mean_y = total.y / total.count;
   return {total.xx / total.count - mean_x * mean_x, total.yy / total.count - mean_y * mean_y,
