@@ -20,7 +20,7 @@ struct TargetSpecification {
   double ratio = 1.0, mean_alpha = 0.0;  ///< anisotropy
   std::filesystem::path scan;            ///< scan
   double outliers = 5.0;                 ///< samples beyond that many standard deviations are taken out; 0: none
-  std::optional<double> tolerance;  ///< left out: 0.05 of the slopes' variances; a lobe is then not judged
+  std::optional<double> tolerance;       ///< left out: 0.05 of the slopes' variances; a lobe is then not judged
   Angle rotation_tolerance = Angle::from_degrees(2.0);
 };
 

@@ -77,6 +77,7 @@ private:
 };
 
 /// One direction of the light: a PathTracer that is used once.
-[[nodiscard]] Bsdf trace_bsdf(const HeightField& field, const PathTracingOptions& options, const Progress& progress = {});
+[[nodiscard]] Bsdf trace_bsdf(const HeightField& field, const PathTracingOptions& options,
+                              const Progress& progress = {});
 
 }  // namespace mezzotint
