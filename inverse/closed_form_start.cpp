@@ -16,8 +16,8 @@ constexpr double noise_wavelength_per_scale = 1.3;
 double square(double value) { return value * value; }
 
 // What the pattern itself must show; the ground brings the rest.
-double without_ground(double rms_slope, const PrinterProfile& printer) {
-  const double ground = ground_rms_slope(printer, printer.ground);
+double without_ground(double rms_slope, const PrinterProfile& printer, Length wavelength) {
+  const double ground = ground_rms_slope(printer, split_ground(printer, wavelength).geometric);
   return std::sqrt(std::max(square(rms_slope) - square(ground), square(0.2 * rms_slope)));
 }
 
@@ -59,9 +59,9 @@ Pattern start(Ridges ridges, double major, double, Angle rotation, const Printer
 
 }  // namespace
 
-Pattern closed_form_start(Pattern pattern, const Target& target, const PrinterProfile& printer) {
-  const double major = without_ground(target.slopes.rms_major, printer);
-  const double minor = without_ground(target.slopes.rms_minor, printer);
+Pattern closed_form_start(Pattern pattern, const Target& target, const PrinterProfile& printer, Length wavelength) {
+  const double major = without_ground(target.slopes.rms_major, printer, wavelength);
+  const double minor = without_ground(target.slopes.rms_minor, printer, wavelength);
   return std::visit([&](auto& kind) { return start(kind, major, minor, target.slopes.rotation, printer); }, pattern);
 }
 

@@ -12,6 +12,8 @@ namespace mezzotint {
 ///
 /// Only lengths along the surface, stretch and direction are chosen; the height, the skew and everything random
 /// are taken from `pattern`. Ridges have one slope: the steeper one is matched.
-[[nodiscard]] Pattern closed_form_start(Pattern pattern, const Target& target, const PrinterProfile& printer);
+/// The ground's octaves that are geometry at `wavelength` bring a part of the slopes.
+[[nodiscard]] Pattern closed_form_start(Pattern pattern, const Target& target, const PrinterProfile& printer,
+                                        Length wavelength);
 
 }  // namespace mezzotint

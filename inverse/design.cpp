@@ -145,7 +145,7 @@ std::vector<std::uint64_t> fresh_seeds(const DesignProblem& problem) {
 }
 
 std::vector<Variable> search_variables(const DesignProblem& problem) {
-  const Pattern start = closed_form_start(problem.pattern, problem.target, problem.printer);
+  const Pattern start = closed_form_start(problem.pattern, problem.target, problem.printer, problem.patch.wavelength);
   std::vector<Variable> variables;
   for (const auto& parameter : problem.free) {
     const PatternParameter& entry = table_entry(problem.pattern, parameter);

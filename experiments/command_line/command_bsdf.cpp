@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "experiments/command_line/command.h"
+#include "experiments/command_line/option_checks.h"
 #include "experiments/run/simulate.h"
 #include "experiments/version.h"
 #include "forward/base/quantity.h"
@@ -64,6 +65,13 @@ Bsdf simulate_once(const HeightField& relief, const SimulationSpecification& sim
 }
 
 Bsdf compute(const BsdfArguments& arguments, const CommandContext& context) {
+  require(arguments.model != "moments" || arguments.samples <= 0.0,
+          "the moments are a closed form: --samples and what goes with it mean nothing there");
+  require(std::filesystem::path(arguments.output).extension() == ".exr",
+          arguments.output + ": a BSDF is written as .exr");
+  require(arguments.incidence[0] >= 0.0 && arguments.incidence[0] <= 89.0,
+          "--incidence: the light comes from above, THETA from 0 to 89; a lower ray would cross the relief for ever");
+  require_folder_of(arguments.output);
   const SurfaceFile surface = read_surface(arguments.input);
   SimulationSpecification simulation;
   simulation.material = parse_material(arguments.material);
@@ -95,10 +103,11 @@ void add_arguments(CLI::App& app, BsdfArguments& arguments) {
       ->check(CLI::IsMember({"auto", "paths", "moments"}));
   app.add_option("--resolution", arguments.resolution, "Bins a side of the direction map (default 64)")
       ->check(CLI::Range(8, 1024));
-  auto* samples = app.add_option("--samples", arguments.samples, "Number of paths, for example 1e6")
-                      ->check(CLI::Range(1.0, 6.8e10));
+  auto* samples = app.add_option("--samples", arguments.samples,
+                                 "Number of paths, for example 1e6 (rounded up to at most twice that)")
+                      ->check(in_range(1.0, 6.8e10));
   app.add_option("--tolerance", arguments.tolerance, "Relative standard error to reach (default 0.02)")
-      ->check(CLI::Range(1e-4, 1.0))
+      ->check(in_range(1e-4, 1.0))
       ->excludes(samples);
   app.add_option("--normals", arguments.normals, "geometric (default) or interpolated; with --samples")
       ->check(CLI::IsMember({"geometric", "interpolated"}))
@@ -111,8 +120,8 @@ void add_arguments(CLI::App& app, BsdfArguments& arguments) {
 }  // namespace
 
 Command add_bsdf(CLI::App& program) {
-  auto* app =
-      program.add_subcommand("bsdf", "The BSDF of a relief by path tracing, with a standard error for every bin");
+  auto* app = program.add_subcommand(
+      "bsdf", "The BSDF of a relief by path tracing (with a standard error for every bin), or from its slope moments");
   auto arguments = std::make_shared<BsdfArguments>();
   add_arguments(*app, *arguments);
   return {app, [arguments](const CommandContext& context) {

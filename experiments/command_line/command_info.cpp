@@ -66,6 +66,9 @@ Json describe(const Job& job) {
 }
 
 bool begins_with(const std::filesystem::path& path, std::string_view magic) {
+  // A pipe would be waited for.
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;
   std::ifstream stream(path, std::ios::binary);
   std::string head(magic.size(), '\0');
   stream.read(head.data(), static_cast<std::streamsize>(head.size()));
@@ -95,10 +98,10 @@ std::string in_words(const Json& json) {
     const bool is_list = value.is_object() && !value.contains("value");
     if (!is_list) {
       if (value_in_words(value).empty()) continue;
-      text += fmt::format("{:<16}{}\n", key, value_in_words(value));
+      text += fmt::format("{:<18} {}\n", key, value_in_words(value));
       continue;
     }
-    for (const auto& [name, entry] : value.items()) text += fmt::format("  {:<14}{}\n", name, value_in_words(entry));
+    for (const auto& [name, entry] : value.items()) text += fmt::format("  {:<22} {}\n", name, value_in_words(entry));
   }
   if (!text.empty()) text.pop_back();
   return text;
@@ -124,8 +127,9 @@ Command add_info(CLI::App& program) {
 }
 
 Command add_job(CLI::App& program) {
-  return describing_command(program, "job", "Check a layer archive (.uvj): layers, sizes, bit depth, exposures, hashes",
-                            [](const std::filesystem::path& path) { return describe(read_uvj(path)); });
+  return describing_command(
+      program, "job", "Check a layer archive (.uvj) whole (layers, sizes, bit depth, exposures, hashes) and sum it up",
+      [](const std::filesystem::path& path) { return describe(read_uvj(path)); });
 }
 
 }  // namespace mezzotint

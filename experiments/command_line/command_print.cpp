@@ -1,9 +1,11 @@
 #include <cmath>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "experiments/command_line/command.h"
+#include "experiments/command_line/option_checks.h"
 #include "experiments/configuration/printer_file.h"
 #include "experiments/run/run_files.h"
 #include "fabrication/device/virtual_printer.h"
@@ -22,6 +24,7 @@ struct PrintArguments {
   std::string device = "virtual";
   std::string printer;
   std::size_t subsamples = 4;
+  double wavelength_nm = 550.0;
 };
 
 struct ValidateArguments {
@@ -47,23 +50,35 @@ Command add_print(CLI::App& program) {
   app->add_option("--output,-o", arguments->output, "Printed relief to write (.gwy)")->required();
   app->add_option("--device", arguments->device, "virtual")->check(CLI::IsMember({"virtual"}));
   app->add_option("--printer", arguments->printer, "Printer profile (TOML; default: the slides' printer)");
+  app->add_option("--wavelength-nm", arguments->wavelength_nm,
+                  "Decides which octaves of the printer's ground are geometry (default 550)")
+      ->check(in_range(200.0, 20000.0));
   app->add_option("--subsamples", arguments->subsamples, "Samples of the relief a pixel and axis (default 4)")
       ->check(CLI::Range(1, 16));
-  return {
-      app, [arguments](const CommandContext& context) {
-        const PrinterProfile printer = arguments->printer.empty() ? PrinterProfile{} : read_printer(arguments->printer);
-        const std::uint64_t seed = context.common.seed >= 0 ? static_cast<std::uint64_t>(context.common.seed) : 1;
-        const HeightField relief = print_virtually(
-            read_uvj(arguments->job), printer, {.subsamples = arguments->subsamples, .seed = seed}, context.progress);
-        write_gwy(relief, "printed", {{"device", "virtual printer"}, {"printer", printer.name}}, arguments->output);
-        context.print({{"written", arguments->output}, {"columns", relief.columns()}, {"rows", relief.rows()}},
-                      "wrote " + arguments->output);
-        return ExitStatus::Done;
-      }};
+  return {app, [arguments](const CommandContext& context) {
+            require(std::filesystem::path(arguments->output).extension() == ".gwy",
+                    arguments->output + ": the printed relief is written as .gwy");
+            require_folder_of(arguments->output);
+            const PrinterProfile printer =
+                arguments->printer.empty() ? PrinterProfile{} : read_printer(arguments->printer);
+            const std::uint64_t seed = context.common.seed >= 0 ? static_cast<std::uint64_t>(context.common.seed) : 1;
+            const HeightField relief = print_virtually(read_uvj(arguments->job), printer,
+                                                       {.subsamples = arguments->subsamples,
+                                                        .wavelength = Length::from_nm(arguments->wavelength_nm),
+                                                        .seed = seed},
+                                                       context.progress);
+            write_gwy(relief, "printed", {{"device", "virtual printer"}, {"printer", printer.name}}, arguments->output);
+            context.print({{"written", arguments->output}, {"columns", relief.columns()}, {"rows", relief.rows()}},
+                          "wrote " + arguments->output);
+            return ExitStatus::Done;
+          }};
 }
 
 Command add_validate(CLI::App& program) {
-  auto* app = program.add_subcommand("validate", "Register a measured surface to a design and compare them");
+  auto* app = program.add_subcommand(
+      "validate",
+      "Register a measured surface to a design and compare them. The measurement is levelled; outliers are not "
+      "taken out (see correct), and it may be turned by up to 5 degrees.");
   auto arguments = std::make_shared<ValidateArguments>();
   app->add_option("DESIGN", arguments->design, "Designed relief (.gwy)")->required();
   app->add_option("--measured", arguments->measured, "Measured surface (.al3d, .x3p, .gwy)")->required();
@@ -82,7 +97,9 @@ Command add_validate(CLI::App& program) {
                  {{"design", to_json(area_roughness(level(only_where_measured(design, registered))))},
                   {"measured", to_json(area_roughness(level(registered)))}}}};
             const std::filesystem::path folder = arguments->output;
-            std::filesystem::create_directories(folder);
+            std::error_code problem;
+            std::filesystem::create_directories(folder, problem);
+            if (problem) throw DeviceError("cannot make the folder " + folder.string() + ": " + problem.message());
             write_gwy(registered, "registered", {}, folder / "registered.gwy");
             write_gwy(difference, "residual", {}, folder / "residual.gwy");
             write_json(json, folder / "comparison.json");

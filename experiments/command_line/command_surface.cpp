@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "experiments/command_line/command.h"
+#include "experiments/command_line/option_checks.h"
 #include "experiments/configuration/pattern_table.h"
 #include "experiments/run/run_files.h"
 #include "forward/surface/mesh.h"
@@ -30,7 +31,11 @@ std::string ending_of(const std::string& path) {
 }
 
 void write_surface(const SurfaceFile& surface, const std::string& path) {
-  if (ending_of(path) == ".gwy") return write_gwy(surface.field, surface.title, surface.provenance, path);
+  if (ending_of(path) == ".gwy") {
+    auto provenance = surface.provenance;
+    if (!surface.assumption.empty()) provenance["assumption"] = surface.assumption;
+    return write_gwy(surface.field, surface.title, provenance, path);
+  }
   if (ending_of(path) == ".obj") return write_obj(to_mesh(surface.field), {}, path);
   throw InvalidInput(path + ": surfaces are written as .gwy or .obj");
 }
@@ -72,6 +77,20 @@ HeightField corrected(HeightField field, const CorrectArguments& arguments) {
   return field;
 }
 
+std::string correction_in_words(const CorrectArguments& arguments) {
+  std::string text;
+  const auto add = [&](const std::string& step) { text += (text.empty() ? "" : "; ") + step; };
+  if (!arguments.crop.empty()) {
+    add(fmt::format("cropped to {} x {} samples from ({}, {})", arguments.crop[2], arguments.crop[3], arguments.crop[0],
+                    arguments.crop[1]));
+  }
+  if (arguments.level == "plane") add("levelled by the least-squares plane");
+  if (arguments.outliers > 0.0)
+    add(fmt::format("outliers beyond {:g} standard deviations taken out", arguments.outliers));
+  if (arguments.fill) add("missing samples filled by Laplace's equation");
+  return text.empty() ? "none" : text;
+}
+
 }  // namespace
 
 Command add_convert(CLI::App& program) {
@@ -93,7 +112,7 @@ Command add_correct(CLI::App& program) {
   app->add_option("SCAN", arguments->input, "Surface file")->required();
   app->add_option("--output,-o", arguments->output, "File to write (.gwy or .obj)")->required();
   app->add_option("--outliers", arguments->outliers, "Mask samples further than K standard deviations from the plane")
-      ->check(CLI::Range(1.0, 100.0));
+      ->check(in_range(1.0, 100.0));
   app->add_flag("--fill", arguments->fill, "Fill missing samples by Laplace's equation");
   app->add_option("--level", arguments->level, "plane: subtract the least-squares plane")
       ->check(CLI::IsMember({"plane"}));
@@ -102,6 +121,7 @@ Command add_correct(CLI::App& program) {
             SurfaceFile surface = read_surface(arguments->input);
             const std::size_t missing = surface.field.missing_count();
             surface.field = corrected(std::move(surface.field), *arguments);
+            surface.provenance["correction"] = correction_in_words(*arguments);
             write_surface(surface, arguments->output);
             Json json = written(arguments->output);
             json["missing_before"] = missing;
@@ -143,9 +163,11 @@ Command add_synthesize(CLI::App& program) {
   app->add_option("--output,-o", arguments->output, "File to write (.gwy or .obj)")->required();
   app->add_option("--set", arguments->settings, "Change a setting: --set pattern.scale_um=80")->allow_extra_args(false);
   return {app, [arguments](const CommandContext& context) {
-            auto settings = arguments->settings;
-            if (context.common.seed >= 0) settings.push_back("pattern.seed=" + std::to_string(context.common.seed));
-            const PatternFile file = read_pattern_file(arguments->input, settings);
+            PatternFile file = read_pattern_file(arguments->input, arguments->settings);
+            auto* noise = std::get_if<Noise>(&file.pattern);
+            if (noise != nullptr && context.common.seed >= 0) {
+              noise->seed = static_cast<std::uint64_t>(context.common.seed);
+            }
             const SurfaceFile surface{synthesize(file.pattern, file.grid),
                                       "pattern",
                                       std::string(kind_name(file.pattern)),
@@ -166,8 +188,8 @@ Command add_mesh(CLI::App& program) {
   auto arguments = std::make_shared<Arguments>();
   app->add_option("HEIGHT", arguments->input, "Surface file (.al3d, .x3p, .gwy)")->required();
   app->add_option("--output,-o", arguments->output, "OBJ to write; its MTL stands beside it")->required();
-  app->add_option("--index", arguments->index, "Index of refraction (Ni of the material)")
-      ->check(CLI::Range(1.0, 10.0));
+  app->add_option("--index", arguments->index, "Index of refraction (Ni of the material; default 1.5)")
+      ->check(in_range(1.0, 10.0));
   return {app, [arguments](const CommandContext& context) {
             if (ending_of(arguments->output) != ".obj")
               throw InvalidInput(arguments->output + ": meshes are written as .obj");

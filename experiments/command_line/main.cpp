@@ -2,6 +2,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <iostream>
 #include <new>
 #include <vector>
 
@@ -36,7 +37,8 @@ void add_common_options(CLI::App& app, CommonOptions& common) {
   app.add_flag("--quiet,-q", common.quiet, "No progress, no notes");
   app.add_option("--threads", common.threads, "Threads to use; results do not depend on it (default: all cores)")
       ->check(CLI::Range(1, 1024));
-  app.add_option("--seed", common.seed, "Seed of everything random")
+  app.add_option("--seed", common.seed,
+                 "Seed of what the command draws at random, if it does (run, design: search.seed)")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 50));
 }
 
@@ -101,7 +103,10 @@ int parse_and_run(int count, char** arguments) {
   try {
     program.parse(count, arguments);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return program.exit(error);
+    if (error.get_exit_code() == 0) {
+      program.exit(error);
+      return std::cout.flush() ? 0 : complain("cannot write to standard output", ExitStatus::Failed);
+    }
     const std::string hint = unknown_command_hint(program, count, arguments);
     if (!hint.empty()) {
       std::fprintf(stderr, "%s\n", hint.c_str());

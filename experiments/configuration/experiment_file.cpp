@@ -1,5 +1,10 @@
 #include "experiments/configuration/experiment_file.h"
 
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
 #include "experiments/configuration/printer_file.h"
 #include "experiments/configuration/suggestion.h"
 #include "inverse/minimize.h"
@@ -29,6 +34,9 @@ TargetSpecification read_target(TomlTable table) {
   } else {
     target.scan = table.file("scan");
     target.outliers = table.number("outliers", {0.0, 100.0}, target.outliers);
+    if (target.outliers > 0.0 && target.outliers < 1.0) {
+      table.complain("outliers", "\"outliers\" is a number of standard deviations: 0 for none, or from 1 to 100");
+    }
   }
   if (table.has("tolerance")) target.tolerance = table.number("tolerance", {1e-6, 10.0});
   target.rotation_tolerance = Angle::from_degrees(table.number("rotation_tolerance_deg", {1e-3, 90.0}, 2.0));
@@ -92,7 +100,7 @@ void read_search(TomlTable table, Experiment& experiment) {
   }
   search.max_evaluations = static_cast<int>(table.integer("max_evaluations", 1, 1'000'000, search.max_evaluations));
   search.relative_tolerance = table.number("relative_tolerance", {1e-12, 0.5}, search.relative_tolerance);
-  search.seed = static_cast<std::uint64_t>(table.integer("seed", 0, std::int64_t{1} << 50, std::int64_t(search.seed)));
+  search.seed = static_cast<std::uint64_t>(table.integer("seed", 0, std::int64_t{1} << 38, std::int64_t(search.seed)));
   experiment.search_draws =
       static_cast<std::size_t>(table.integer("draws", 1, 256, std::int64_t(experiment.search_draws)));
   experiment.fresh_draws =
@@ -131,10 +139,36 @@ VirtualProfilometer read_measurement(TomlTable table) {
   instrument.tilt_x = table.number("tilt_x", {-0.1, 0.1}, 0.002);
   instrument.tilt_y = table.number("tilt_y", {-0.1, 0.1}, -0.001);
   instrument.noise = Length::from_nm(table.number("noise_nm", {0.0, 1e4}, 10.0));
-  instrument.missing_share = table.number("missing_share", {0.0, 0.5}, 0.001);
+  instrument.missing_share = table.number("missing_share", {0.0, 0.05}, 0.001);
   instrument.seed = static_cast<std::uint64_t>(table.integer("seed", 0, INT64_MAX, 1));
   table.finish();
   return instrument;
+}
+
+// What would come to grief at the end of a long run, found at its beginning.
+void require_feasible(const TomlTable& print, const TomlTable& measurement, const Experiment& experiment) {
+  const double side = static_cast<double>(experiment.patch.pixels * experiment.patch.subsamples);
+  const double gib = static_cast<double>(experiment.search_draws) * side * side * sizeof(float) / (1U << 30U);
+  if (gib > 4.0) {
+    print.complain("subsamples", fmt::format("{} draws of {} × {} samples need {:.0f} GiB; take fewer draws, pixels or "
+                                             "subsamples (4 GiB at most)",
+                                             experiment.search_draws, side, side, gib));
+  }
+  const double width_um = static_cast<double>(experiment.patch.pixels) * experiment.printer.pixel_pitch.um();
+  const double samples = width_um / experiment.measurement.pitch.um();
+  if (samples < 32.0 || samples > 8192.0) {
+    measurement.complain("pitch_um", fmt::format("the patch of {:.0f} µm has {:.0f} samples a side at this pitch; it "
+                                                 "must be 32 to 8192",
+                                                 width_um, samples));
+  }
+  for (const auto& [key, shift] : {std::pair{"shift_x_um", experiment.measurement.shift_x},
+                                   std::pair{"shift_y_um", experiment.measurement.shift_y}}) {
+    if (std::abs(shift.um()) > width_um / 4.0) {
+      measurement.complain(key, fmt::format("too much of the patch of {:.0f} µm would be out of sight; \"{}\" can be "
+                                            "a quarter of that",
+                                            width_um, key));
+    }
+  }
 }
 
 }  // namespace
@@ -150,13 +184,14 @@ Experiment read_experiment(const std::filesystem::path& path, const std::vector<
   if (!root.has("target")) root.complain("target", "an experiment needs a [target] table");
   experiment.target = read_target(root.table("target"));
   experiment.printer = read_printer_table(root.table("printer"));
-  experiment.pattern = read_pattern(root.table("pattern"), root.has("pattern"));
+  experiment.pattern = read_pattern(root.table("pattern"), root.has("pattern"), PatternUse::Search);
   experiment.simulation = read_simulation(root.table("simulation"));
   experiment.patch.wavelength = experiment.simulation.wavelength;
   read_search(root.table("search"), experiment);
   read_print(root.table("print"), experiment);
   experiment.measurement = read_measurement(root.table("measurement"));
   root.finish();
+  require_feasible(root.table("print"), root.table("measurement"), experiment);
   if (experiment.pattern.free.empty()) {
     root.complain("pattern",
                   "no parameter of the pattern is free; a search needs one, like scale_um = { free = [30.2, 400.0] }");

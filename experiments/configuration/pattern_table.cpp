@@ -21,7 +21,10 @@ PatternSpecification default_specification() {
           "Beckmann lobe"};
 }
 
-void read_randomness(TomlTable& table, Noise& noise) {
+void read_randomness(TomlTable& table, Noise& noise, PatternUse use) {
+  if (use == PatternUse::Search && table.has("seed")) {
+    table.complain("seed", "a search draws its patterns anew; its seed is that of [search]");
+  }
   noise.seed = static_cast<std::uint64_t>(table.integer("seed", 0, INT64_MAX, std::int64_t(noise.seed)));
   noise.hash =
       table.choice("hash", {"integer", "slides"}, "integer") == "slides" ? CellHash::Slides : CellHash::Integer;
@@ -40,7 +43,7 @@ Grid read_grid(TomlTable table) {
 
 }  // namespace
 
-PatternSpecification read_pattern(TomlTable table, bool table_is_there) {
+PatternSpecification read_pattern(TomlTable table, bool table_is_there, PatternUse use) {
   if (!table_is_there) return default_specification();
   PatternSpecification result;
   if (!table.has("kind")) result.reason = default_specification().reason;
@@ -54,7 +57,7 @@ PatternSpecification read_pattern(TomlTable table, bool table_is_there) {
       result.free.push_back({std::string(parameter.name), value.low, value.high, value.start});
     }
   }
-  if (auto* noise = std::get_if<Noise>(&result.pattern)) read_randomness(table, *noise);
+  if (auto* noise = std::get_if<Noise>(&result.pattern)) read_randomness(table, *noise, use);
   table.finish();
   return result;
 }
@@ -63,7 +66,7 @@ PatternFile read_pattern_file(const std::filesystem::path& path, const std::vect
   const TomlFile file(path, settings);
   TomlTable root(file);
   if (!root.has("pattern")) root.complain("pattern", "a pattern file needs a [pattern] table");
-  PatternSpecification specification = read_pattern(root.table("pattern"), true);
+  PatternSpecification specification = read_pattern(root.table("pattern"), true, PatternUse::Synthesis);
   if (!specification.free.empty()) {
     root.complain("pattern", "\"" + specification.free.front().name +
                                  "\" is free, but synthesize searches nothing; give it a value");

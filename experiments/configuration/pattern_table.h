@@ -17,10 +17,13 @@ struct PatternSpecification {
   std::string reason;  ///< why this kind, where the user left it open
 };
 
+/// A search draws the seeds of its patterns itself (`[search] seed`); a pattern to synthesize has one of its own.
+enum class PatternUse { Search, Synthesis };
+
 /// Reads a `[pattern]` table. Where the table or its kind is left out, stretched noise is taken, and `reason`
 /// says why; a parameter that is left out of an experiment keeps its default and is not free, unless the
 /// whole table is left out: then all that matter are.
-[[nodiscard]] PatternSpecification read_pattern(TomlTable table, bool table_is_there);
+[[nodiscard]] PatternSpecification read_pattern(TomlTable table, bool table_is_there, PatternUse use);
 
 /// A pattern and the grid to evaluate it on: the file of `mezzotint synthesize`.
 struct PatternFile {

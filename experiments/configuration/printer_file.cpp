@@ -11,13 +11,13 @@ Length um(TomlTable& table, std::string_view key, Range range, Length fallback) 
 }
 
 void read_pixels(TomlTable& table, PrinterProfile& printer) {
-  printer.pixels_x = static_cast<std::size_t>(table.integer("pixels_x", 1, 65536, std::int64_t(printer.pixels_x)));
-  printer.pixels_y = static_cast<std::size_t>(table.integer("pixels_y", 1, 65536, std::int64_t(printer.pixels_y)));
+  printer.pixels_x = static_cast<std::size_t>(table.integer("pixels_x", 1, 65535, std::int64_t(printer.pixels_x)));
+  printer.pixels_y = static_cast<std::size_t>(table.integer("pixels_y", 1, 65535, std::int64_t(printer.pixels_y)));
   printer.pixel_pitch = um(table, "pixel_pitch_um", {0.1, 1000.0}, printer.pixel_pitch);
   printer.layer = um(table, "layer_um", {0.1, 1000.0}, printer.layer);
   printer.exposure_s = table.number("exposure_s", {1e-3, 3600.0}, printer.exposure_s);
-  printer.led_amplitude = static_cast<int>(table.integer("led_amplitude", 0, 1023, printer.led_amplitude));
-  printer.gray_levels = static_cast<int>(table.integer("gray_levels", 2, 65536, printer.gray_levels));
+  printer.led_amplitude = static_cast<int>(table.integer("led_amplitude", 1, 255, printer.led_amplitude));
+  printer.gray_levels = static_cast<int>(table.integer("gray_levels", 2, 256, printer.gray_levels));
 }
 
 void read_cure(TomlTable table, CureCurve& cure) {

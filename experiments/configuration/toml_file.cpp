@@ -19,7 +19,10 @@ constexpr std::uintmax_t largest_configuration_bytes = 1U << 20U;
 
 std::string contents_of(const std::filesystem::path& path) {
   std::error_code problem;
-  if (!std::filesystem::is_regular_file(path, problem)) throw ConfigurationError(path.string() + ": no such file");
+  if (!std::filesystem::exists(path, problem)) throw ConfigurationError(path.string() + ": no such file");
+  if (!std::filesystem::is_regular_file(path, problem)) {
+    throw ConfigurationError(path.string() + ": is not a regular file");
+  }
   if (std::filesystem::file_size(path, problem) > largest_configuration_bytes) {
     throw ConfigurationError(path.string() + ": larger than 1 MiB; that is no configuration file");
   }

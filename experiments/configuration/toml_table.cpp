@@ -188,7 +188,9 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) {
   const toml::node* node = find(key);
   std::vector<TomlTable> result;
   if (node == nullptr) return result;
-  if (!node->is_array_of_tables()) complain_at(node, fmt::format("\"{}\" must be a list of tables", key));
+  const bool is_empty_list = node->is_array() && node->as_array()->empty();
+  if (!is_empty_list && !node->is_array_of_tables())
+    complain_at(node, fmt::format("\"{}\" must be a list of tables", key));
   for (const toml::node& element : *node->as_array()) {
     result.push_back({*file_, element.as_table(), name_.empty() ? std::string(key) : name_ + "." + std::string(key)});
   }

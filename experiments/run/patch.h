@@ -14,13 +14,13 @@ inline constexpr std::size_t edge_pixels = 2;
 /// The same part, from a relief that covers the patch alone.
 [[nodiscard]] HeightField inner_patch(const HeightField& patch, const Experiment& experiment);
 
-/// The largest centred part of a field whose missing samples are at most 1 %, and how many samples were cut on
-/// each side.
+/// The largest centred part of a field that the measurement covers, and how many samples were cut on each side.
+/// Covered: missing are at most 1 % more than in the middle, where single samples drop out too.
 struct CoveredPart {
   HeightField field;
   std::size_t inset = 0;
 };
-/// @throws MethodError where there is no such part of at least 16 × 16 samples.
+/// @throws MethodError where there is no such part of at least 16 × 16 samples, or a quarter of the middle is missing.
 [[nodiscard]] CoveredPart covered_part(const HeightField& field);
 
 }  // namespace mezzotint

@@ -53,15 +53,22 @@ nlohmann::json roughness_table(const nlohmann::ordered_json& comparison) {
 nlohmann::json bsdf_table(const RunResults& results) {
   std::vector<TableRow> rows;
   for (const auto& r : results.incidences) {
-    rows.push_back({{fmt::format("θ = {:.0f}°, φ = {:.0f}°", r.incidence.theta.degrees(), r.incidence.phi.degrees()),
-                     quantity_of(r.measured_to_predicted.corrected), Quantity{r.measured_to_predicted.floor, "1", {}},
-                     quantity_of(r.predicted.energy.reflected), quantity_of(r.measured.energy.reflected)}});
+    rows.push_back(
+        {{fmt::format("θ = {:.0f}°, φ = {:.0f}°", r.incidence.theta.degrees(), r.incidence.phi.degrees()),
+          quantity_of(r.measured_to_predicted.corrected), Quantity{r.measured_to_predicted.floor, "1", {}}}});
   }
   return table({.title = "BRDF: measured against predicted",
                 .caption = "`relative_l2` of the two traced maps, corrected for noise, and the floor that Monte Carlo "
                            "noise alone would give. The prediction has another draw of the printer's ground noise.",
                 .span = Span::Half},
-               {"light from", "relative_l2", "noise floor", "albedo predicted", "measured"}, rows);
+               {"light from", "relative_l2", "noise floor"}, rows);
+}
+
+nlohmann::json bsdf_maps(const IncidenceResult& r) {
+  const NamedMap predicted = named_map("predicted", r.predicted.grid, r.predicted.reflection, r.incidence);
+  const NamedMap measured = named_map("measured again", r.measured.grid, r.measured.reflection, r.incidence);
+  return direction_maps({.title = "BRDF of the prediction and of the measured print"},
+                        {predicted, measured, difference_map("measured − predicted", measured, predicted)});
 }
 
 }  // namespace
@@ -97,7 +104,7 @@ Section measurement_section(const RunResults& results) {
   section.components = {registration_table(results.comparison.at("registration")), roughness_table(results.comparison),
                         relief_maps({.title = "Residual: measured − design", .span = Span::Half},
                                     {{"residual", results.residual_relief}}),
-                        bsdf_table(results)};
+                        bsdf_table(results), bsdf_maps(results.incidences.front())};
   return section;
 }
 

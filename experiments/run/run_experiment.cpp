@@ -37,13 +37,18 @@ std::vector<Stage> wanted_stages(const std::string& last) {
 // Seconds are the one thing that differs from run to run, so they have a file of their own.
 class Timing {
 public:
+  /// Goes on from the seconds of the stages that an earlier, interrupted run finished.
+  explicit Timing(const RunFolder& folder) {
+    if (std::filesystem::exists(folder / "timing.json")) seconds_ = read_json(folder / "timing.json");
+    if (!seconds_.is_object()) seconds_ = nlohmann::ordered_json::object();
+  }
   void add(const std::string& stage, std::chrono::steady_clock::duration duration) {
     seconds_[stage] = std::chrono::duration<double>(duration).count();
   }
   void save(const RunFolder& folder) const { write_json(seconds_, folder / "timing.json"); }
 
 private:
-  nlohmann::ordered_json seconds_ = nlohmann::ordered_json::object();
+  nlohmann::ordered_json seconds_;
 };
 
 }  // namespace
@@ -64,7 +69,7 @@ std::string experiment_digest(const Experiment& experiment) {
 
 RunOutcome run_experiment(const Experiment& experiment, const RunOptions& options, const Progress& progress) {
   RunFolder folder(options.folder, experiment_digest(experiment), options.resume);
-  Timing timing;
+  Timing timing(folder);
   bool earlier_stage_ran = false;
   for (const auto& stage : wanted_stages(options.last_stage)) {
     if (!earlier_stage_ran && folder.is_finished(stage.name)) {
@@ -83,8 +88,9 @@ RunOutcome run_experiment(const Experiment& experiment, const RunOptions& option
   const auto summary_file = folder / "summary.json";
   const bool has_summary = std::filesystem::exists(summary_file);
   const auto target = target_from_json(read_json(folder / "target.json"));
-  return {folder.path(), design.met, verdict_sentence(target, design),
-          has_summary ? read_json(summary_file) : to_json(design)};
+  auto summary = has_summary ? read_json(summary_file) : to_json(design);
+  const bool met = design.met && summary.value("simulation_tolerance_met", true);
+  return {folder.path(), met, verdict_sentence(target, design), std::move(summary)};
 }
 
 }  // namespace mezzotint

@@ -19,7 +19,7 @@ struct RunOptions {
 /// What a run came to.
 struct RunOutcome {
   std::filesystem::path folder;
-  bool met = false;                ///< the target, within the tolerances that the file states
+  bool met = false;                ///< every tolerance: the target's and, where it came to that, the simulation's
   std::string verdict;             ///< in one sentence
   nlohmann::ordered_json summary;  ///< summary.json; design.json where the run ended before it
 };

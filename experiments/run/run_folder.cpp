@@ -1,5 +1,9 @@
 #include "experiments/run/run_folder.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+#include <cerrno>
 #include <fstream>
 
 #include "forward/base/digest.h"
@@ -17,6 +21,21 @@ constexpr const char* state_name = "run.json";
 
 bool is_empty_or_missing(const fs::path& folder) { return !fs::exists(folder) || fs::is_empty(folder); }
 
+// "runs/brushed/" and "runs/brushed" are one folder.
+fs::path without_trailing_slash(fs::path folder) { return folder.has_filename() ? folder : folder.parent_path(); }
+
+// The lock ends with the process however that ends, and leaves no file. Where a file system knows no locks, there
+// is none.
+std::shared_ptr<void> lock(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return nullptr;
+  std::shared_ptr<void> result(nullptr, [descriptor](void*) { ::close(descriptor); });
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    throw DeviceError("another run is at work in " + folder.string() + "; wait for it, or name another folder");
+  }
+  return result;
+}
+
 // A run that was killed may have left temporaries of half-written files.
 void remove_leftovers(const fs::path& folder) {
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -29,6 +48,9 @@ void remove_leftovers(const fs::path& folder) {
 
 void move_aside(const fs::path& folder) {
   const fs::path previous = folder.string() + ".previous";
+  require(
+      is_empty_or_missing(previous) || fs::exists(previous / state_name),
+      previous.string() + " holds something that is no run of ours, and the earlier run would go there; move it away");
   fs::remove_all(previous);
   fs::rename(folder, previous);
 }
@@ -47,11 +69,13 @@ nlohmann::ordered_json read_state(const fs::path& path) {
 
 std::string file_digest(const fs::path& path) { return sha256_hex(read_file(path)); }
 
-RunFolder::RunFolder(fs::path folder, std::string experiment_digest, bool resume) : folder_(std::move(folder)) {
+RunFolder::RunFolder(fs::path folder, std::string experiment_digest, bool resume)
+    : folder_(without_trailing_slash(std::move(folder))) {
   const fs::path state_path = folder_ / state_name;
   const bool has_run = fs::exists(state_path);
   require(has_run || is_empty_or_missing(folder_),
           folder_.string() + " holds something that is no run of ours; name another folder with --out");
+  if (has_run) lock_ = lock(folder_);
   if (has_run && resume) {
     state_ = read_state(state_path);
     require(state_["experiment"] == experiment_digest,
@@ -68,6 +92,7 @@ RunFolder::RunFolder(fs::path folder, std::string experiment_digest, bool resume
   } catch (const fs::filesystem_error& error) {
     throw DeviceError("cannot make the folder " + folder_.string() + ": " + error.code().message());
   }
+  lock_ = lock(folder_);
   state_ = {{"experiment", experiment_digest}, {"stages", nlohmann::ordered_json::object()}};
   save();
 }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,7 @@ public:
   /// Opens a folder for an experiment. Without `resume` an earlier run in it is moved to FOLDER.previous
   /// (which is replaced), so that nothing is lost by a mistake; half-written files of a killed run are removed.
   /// @throws InvalidInput where the folder holds something that is no run, or `resume` meets another experiment.
-  /// @throws DeviceError where the folder cannot be made.
+  /// @throws DeviceError where the folder cannot be made, or another run is at work in it.
   RunFolder(std::filesystem::path folder, std::string experiment_digest, bool resume);
 
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
@@ -34,6 +35,7 @@ private:
 
   std::filesystem::path folder_;
   nlohmann::ordered_json state_;
+  std::shared_ptr<void> lock_;  ///< keeps other processes out
 };
 
 /// SHA-256 of a file.

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "experiments/run/patch.h"
+#include "experiments/run/simulate.h"
 #include "experiments/version.h"
 #include "measurement/correction/correction.h"
 #include "measurement/formats/surface_file.h"
@@ -49,6 +50,16 @@ IncidenceResult load_incidence(const Experiment& experiment, const RunFolder& fo
   return r;
 }
 
+void note_if_noisy(const Experiment& experiment, const char* name, const IncidenceResult& r, const Bsdf& bsdf,
+                   std::vector<std::string>& noisy) {
+  const double error = relative_error(bsdf.grid, bsdf.reflection);
+  if (error <= experiment.simulation.tolerance) return;
+  noisy.push_back(fmt::format(
+      "the BSDF of the {} surface at θ = {:.3g}°, φ = {:.3g}° has a relative standard error of "
+      "{:.3g}; {:.3g} was asked for: raise [simulation] samples",
+      name, r.incidence.theta.degrees(), r.incidence.phi.degrees(), error, experiment.simulation.tolerance));
+}
+
 Json figure(double value, const char* unit, double standard_error) { return Quantity{value, unit, standard_error}; }
 
 Json slopes_summary(const SlopeAxesEstimate& estimate) {
@@ -58,10 +69,31 @@ Json slopes_summary(const SlopeAxesEstimate& estimate) {
           {"rotation", figure(estimate.axes.rotation.degrees(), "°", estimate.rotation_error.degrees())}};
 }
 
-Json error_summary(const TargetError& error) {
-  return {{"relative_variance_major", error.variance_major},
-          {"relative_variance_minor", error.variance_minor},
-          {"rotation_deg", error.rotation.degrees()}};
+// A figure that is what it is: a target, or what one print came to.
+Json exact(double value, const char* unit) { return Quantity{value, unit, {}}; }
+
+Json exact_slopes(const SlopeAxes& axes) {
+  const double to_alpha = std::sqrt(2.0);
+  return {{"alpha_x", exact(to_alpha * axes.rms_major, "1")},
+          {"alpha_y", exact(to_alpha * axes.rms_minor, "1")},
+          {"rotation", exact(axes.rotation.degrees(), "°")}};
+}
+
+// The variances' relative errors are twice those of the slopes; the slopes carry the standard errors.
+Json error_summary(const TargetError& error, const SlopeAxesEstimate* estimate) {
+  Json summary = {{"relative_variance_major", exact(error.variance_major, "1")},
+                  {"relative_variance_minor", exact(error.variance_minor, "1")},
+                  {"rotation", exact(error.rotation.degrees(), "°")}};
+  if (estimate != nullptr) {
+    const SlopeAxesEstimate& e = *estimate;
+    const auto twice = [](double sigma, double value) { return 2.0 * sigma / value; };
+    summary["relative_variance_major"]["standard_error"] =
+        (1.0 + error.variance_major) * twice(e.rms_major_error, e.axes.rms_major);
+    summary["relative_variance_minor"]["standard_error"] =
+        (1.0 + error.variance_minor) * twice(e.rms_minor_error, e.axes.rms_minor);
+    summary["rotation"]["standard_error"] = e.rotation_error.degrees();
+  }
+  return summary;
 }
 
 Json lobe_error_summary(const Design& design) {
@@ -82,13 +114,18 @@ Json incidence_summary(const IncidenceResult& r) {
           {"target_to_beckmann_of_its_own_slopes",
            r.target_to_its_lobe ? difference_summary(*r.target_to_its_lobe) : Json(nullptr)},
           {"printed_to_beckmann_of_its_own_slopes", difference_summary(r.printed_to_own_lobe)},
-          {"beckmann_of_its_own_slopes_to_target_lobe", {{"relative_l2", r.own_lobe_to_target_lobe}}},
+          {"beckmann_of_its_own_slopes_to_target_lobe", {{"relative_l2", exact(r.own_lobe_to_target_lobe, "1")}}},
           {"measured_to_predicted", difference_summary(r.measured_to_predicted)}};
 }
 
 }  // namespace
 
 Quantity quantity_of(const Estimate& estimate) { return {estimate.value, "1", estimate.standard_error}; }
+
+bool is_ambiguous(const RunResults& results) {
+  const Json& registration = results.comparison.at("registration");
+  return registration.at("runner_up").get<double>() > registration.at("correlation").get<double>() - ambiguity_margin;
+}
 
 RunResults load_results(const Experiment& experiment, const RunFolder& folder) {
   const auto relief = [&](const char* file) { return read_gwy(folder / file).field; };
@@ -106,33 +143,36 @@ RunResults load_results(const Experiment& experiment, const RunFolder& folder) {
   results.coherent_share = split_ground(experiment.printer, experiment.simulation.wavelength).coherent_share;
   for (std::size_t i = 0; i < experiment.simulation.incidences.size(); ++i) {
     results.incidences.push_back(load_incidence(experiment, folder, results, i));
+    const IncidenceResult& r = results.incidences.back();
+    note_if_noisy(experiment, "predicted", r, r.predicted, results.noisy_maps);
+    note_if_noisy(experiment, "printed", r, r.printed, results.noisy_maps);
+    note_if_noisy(experiment, "measured", r, r.measured, results.noisy_maps);
+    if (r.traced_target) note_if_noisy(experiment, "target", r, *r.traced_target, results.noisy_maps);
   }
   return results;
 }
 
 nlohmann::ordered_json summarize(const Experiment& experiment, const RunResults& results) {
-  const double to_alpha = std::sqrt(2.0);
+  Json target = exact_slopes(results.target.slopes);
+  target["kind"] = results.target.kind;
+  target["tolerance"] = to_json(results.target).at("tolerance");
+  Json print = exact_slopes(results.printed_slopes);
+  print["error"] = error_summary(results.printed_error, nullptr);
   Json summary = {{"experiment", experiment.name},
                   {"program", std::string("mezzotint ") + program_version},
-                  {"met", results.design.met},
+                  {"met", is_judged(results.target) ? Json(results.design.met) : Json(nullptr)},
+                  {"simulation_tolerance_met", results.noisy_maps.empty()},
                   {"verdict", verdict_sentence(results.target, results.design)},
-                  {"target",
-                   {{"kind", results.target.kind},
-                    {"alpha_x", to_alpha * results.target.slopes.rms_major},
-                    {"alpha_y", to_alpha * results.target.slopes.rms_minor},
-                    {"rotation_deg", results.target.slopes.rotation.degrees()},
-                    {"tolerance", to_json(results.target).at("tolerance")}}},
+                  {"target", target},
                   {"fresh_draws", slopes_summary(results.design.on_fresh_draws)},
-                  {"fresh_draws_error", error_summary(results.design.fresh_error)},
+                  {"fresh_draws_error", error_summary(results.design.fresh_error, &results.design.on_fresh_draws)},
                   {"fresh_draws_cube_root_error", lobe_error_summary(results.design)},
-                  {"this_print",
-                   {{"alpha_x", to_alpha * results.printed_slopes.rms_major},
-                    {"alpha_y", to_alpha * results.printed_slopes.rms_minor},
-                    {"rotation_deg", results.printed_slopes.rotation.degrees()},
-                    {"error", error_summary(results.printed_error)}}},
+                  {"this_print", print},
                   {"ground_coherent_share", results.coherent_share},
                   {"comparison", results.comparison},
                   {"warnings", results.design.warnings}};
+  for (const auto& noisy : results.noisy_maps) summary["warnings"].push_back(noisy);
+  if (is_ambiguous(results)) summary["warnings"].push_back(ambiguity_in_words);
   for (const auto& incidence : results.incidences) summary["bsdf"].push_back(incidence_summary(incidence));
   return summary;
 }

@@ -35,7 +35,16 @@ struct RunResults {
   TargetError printed_error;
   double coherent_share = 1.0;  ///< light that the ground's left-out octaves leave unscattered
   std::vector<IncidenceResult> incidences;
+  /// Maps that stayed above `[simulation] tolerance` at the largest number of samples, in words.
+  std::vector<std::string> noisy_maps;
 };
+
+/// Whether another placement of the measurement fits nearly as well, as on a periodic pattern.
+[[nodiscard]] bool is_ambiguous(const RunResults& results);
+inline constexpr double ambiguity_margin = 0.02;
+inline constexpr const char* ambiguity_in_words =
+    "the measurement fits the design nearly as well at another place (runner_up): a periodic pattern repeats, and "
+    "shift_x and shift_y may be off by whole periods";
 
 [[nodiscard]] RunResults load_results(const Experiment& experiment, const RunFolder& folder);
 

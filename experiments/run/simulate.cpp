@@ -9,6 +9,8 @@ namespace mezzotint {
 
 namespace {
 
+// Pilots draw from seeds that nobody else uses, so that a result's seed is the one that was asked for.
+constexpr std::uint64_t pilot_seed_offset = std::uint64_t{1} << 60;
 // The pilot's own uncertainty must not leave the result just short of what was asked for.
 constexpr double safety = 1.15;
 
@@ -36,12 +38,12 @@ Bsdf simulate(PathTracer& relief, const SimulationSpecification& simulation, con
                              .grid = {simulation.resolution, simulation.resolution},
                              .material = simulation.material,
                              .samples = std::min(simulation.least_samples, simulation.most_samples),
-                             .seed = 2 * seed};
+                             .seed = pilot_seed_offset + seed};
   Bsdf result = relief.trace(options);
   const double pilot_error = relative_error(options.grid, result.reflection);
   if (pilot_error > simulation.tolerance && options.samples < simulation.most_samples) {
     options.samples = samples_for(pilot_error, simulation);
-    options.seed = 2 * seed + 1;
+    options.seed = seed;
     result = relief.trace(options, progress);
   }
   result.provenance["relative_standard_error"] = fmt::format("{:.6g}", relative_error(options.grid, result.reflection));

@@ -11,8 +11,8 @@ namespace mezzotint {
 
 namespace {
 
-// The printer's own draw of the day; the search never uses seeds as large.
-constexpr std::uint64_t print_seed_offset = std::uint64_t{1} << 52;
+// The printer's own draw of the day; the search never uses seeds as large, and `mezzotint print --seed` takes it.
+constexpr std::uint64_t print_seed_offset = std::uint64_t{1} << 49;
 
 GrayImage gray_of_patch(const Experiment& experiment, const Design& design) {
   const PatternInstance instance = draw_instance(design.pattern, design.print_seed);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "forward/base/error.h"
 #include "measurement/correction/correction.h"
 #include "measurement/formats/surface_file.h"
 
@@ -12,6 +13,7 @@ TargetRelief read_target_relief(const std::filesystem::path& scan, double outlie
   auto provenance = file.provenance;
   provenance["source"] = scan.filename().string();
   const std::size_t missing = file.field.missing_count();
+  if (missing == file.field.grid().size()) throw FileError(scan, "", "holds no measured sample; it cannot be a target");
   HeightField field = level(file.field);
   std::size_t removed = 0;
   if (outliers > 0.0) {

@@ -21,17 +21,17 @@ void require_valid_light(const PrinterProfile& profile) {
           "printer profile: led_amplitude must be within 1 and 255");
   require(profile.gray_levels >= 2 && profile.gray_levels <= 65536,
           "printer profile: gray_levels must be within 2 and 65536");
-  require(at_least_zero(profile.blur_sigma.um()), "printer profile: blur_sigma_um must be 0 or more");
+  require(at_least_zero(profile.blur_sigma.um()), "printer profile: [blur] sigma_um must be 0 or more");
   require(profile.blur_sigma / profile.pixel_pitch <= widest_blur_pixels,
-          "printer profile: blur_sigma_um must be at most 64 pixels");
+          "printer profile: [blur] sigma_um must be at most 64 pixels");
   require_valid(profile.cure);
 }
 
 void require_valid_ground(const PrinterProfile& profile) {
-  require(at_least_zero(profile.ground_amplitude.um()), "printer profile: ground_amplitude_um must be 0 or more");
+  require(at_least_zero(profile.ground_amplitude.um()), "printer profile: [ground] amplitude_um must be 0 or more");
   for (const GroundOctave& octave : profile.ground) {
     require(std::isfinite(octave.weight), "printer profile: the weights of the ground must be finite");
-    require(positive(octave.scale.um()), "printer profile: the scales of the ground (scale_um) must be positive");
+    require(positive(octave.scale.um()), "printer profile: scale_um of the [ground] octaves must be positive");
   }
 }
 

@@ -68,7 +68,7 @@ TEST(Design, NeverSearchesOnTheDrawsThatJudgeIt) {
 TEST(Design, BeginsWhereTheClosedFormPutsIt) {
   const PrinterProfile printer;
   const Target target = beckmann_target({0.12, 0.06, 20.0_deg});
-  const Pattern start = closed_form_start(Noise{.height = 12.0_um}, target, printer);
+  const Pattern start = closed_form_start(Noise{.height = 12.0_um}, target, printer, 0.55_um);
   // A start, not the truth: the printed slopes are within a third of the target's.
   const PrintedTexture texture(printer, {.pixels = 128, .subsamples = 4}, {1, 2, 3, 4});
   const SlopeAxes printed = estimate_axes(texture.slope_covariances(start, GrayLevels::Quantized)).axes;

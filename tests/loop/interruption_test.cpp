@@ -8,15 +8,15 @@
 namespace mezzotint::test {
 namespace {
 
-// Long enough to be stopped in the middle: the search and the tracing take about a second each.
+// Long enough to be stopped in the middle: the search and the tracing take half a second and more each.
 std::vector<std::string> slow_run(const std::string& folder) {
   return {"run",   "small.toml",
           "--out", folder,
-          "--set", "search.draws=96",
+          "--set", "search.draws=24",
           "--set", "search.relative_tolerance=1e-12",
-          "--set", "search.max_evaluations=200",
+          "--set", "search.max_evaluations=100",
           "--set", "simulation.tolerance=1e-3",
-          "--set", "simulation.samples=1000000"};
+          "--set", "simulation.samples=600000"};
 }
 
 std::vector<std::string> resumed(std::vector<std::string> arguments) {
@@ -41,39 +41,45 @@ void expect_whole_files(const Files& left, const Files& whole) {
 }
 
 struct Interruption {
-  const char* name;
   int signal;
   const char* after;  ///< the file that is there when the signal comes
   int status;
 };
 
-class Interrupted : public testing::TestWithParam<Interruption> {};
-
-TEST_P(Interrupted, LeavesNoHalfFileAndResumesToTheSameBits) {
+// Ctrl-C in the search, a request to end and a power cut in the tracing, one after the other.
+TEST(Resume, AfterEveryInterruptionEndsInTheSameBits) {
   const Workplace here;
-  const Interruption& interruption = GetParam();
   const Ending uninterrupted = here.mezzotint(slow_run("whole"));
   const Files whole = here.files("whole");
-
-  RunningProgram program(here.path(), slow_run("run"));
-  ASSERT_TRUE(program.wait_for(here / "run" / interruption.after));
-  program.send(interruption.signal);
-  EXPECT_EQ(program.wait().status, interruption.status);
-  const Files left = here.files("run");
-  EXPECT_FALSE(left.contains("report.html")) << "it came too late to interrupt anything";
-  expect_whole_files(interruption.signal == SIGKILL ? without_temporaries(left) : left, whole);
-
+  for (const auto& [signal, after, status] :
+       {Interruption{SIGINT, "target.json", 1}, Interruption{SIGTERM, "comparison.json", 1},
+        Interruption{SIGKILL, "bsdf_printed_0.exr", 128 + SIGKILL}}) {
+    RunningProgram program(here.path(), resumed(slow_run("run")));
+    ASSERT_TRUE(program.wait_for(here / "run" / after)) << after;
+    program.send(signal);
+    EXPECT_EQ(program.wait().status, status) << after;
+    const Files left = here.files("run");
+    EXPECT_FALSE(left.contains("report.html")) << "it came too late to interrupt anything";
+    expect_whole_files(signal == SIGKILL ? without_temporaries(left) : left, whole);
+  }
   const Ending ending = here.mezzotint(resumed(slow_run("run")));
   EXPECT_EQ(ending.status, uninterrupted.status) << ending.err;
   EXPECT_EQ(differences(here.files("run"), whole), "");
+  EXPECT_EQ(here.read_json("run/timing.json").size(), here.read_json("whole/timing.json").size())
+      << "the seconds of all stages are kept";
 }
 
-INSTANTIATE_TEST_SUITE_P(Loop, Interrupted,
-                         testing::Values(Interruption{"CtrlCInTheSearch", SIGINT, "target.json", 1},
-                                         Interruption{"CtrlCInTheTracing", SIGINT, "bsdf_predicted_0.exr", 1},
-                                         Interruption{"TermInTheTracing", SIGTERM, "comparison.json", 1},
-                                         Interruption{"KillInTheTracing", SIGKILL, "bsdf_predicted_0.exr", 137}),
-                         [](const auto& test) { return test.param.name; });
+TEST(Run, KeepsOutOfAFolderInWhichAnotherIsAtWork) {
+  const Workplace here;
+  RunningProgram first(here.path(), slow_run("run"));
+  ASSERT_TRUE(first.wait_for(here / "run" / "target.json"));
+  for (const char* line : {"run small.toml --out run", "run small.toml --out run --resume"}) {
+    const Ending second = here.mezzotint(words(line));
+    EXPECT_EQ(second.status, 1);
+    EXPECT_NE(second.err.find("another run is at work"), std::string::npos) << second.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(here / "run.previous"));
+}
 
 TEST(Resume, OfAFinishedRunTouchesNothing) {
   const Workplace here;

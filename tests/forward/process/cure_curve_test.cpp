@@ -108,7 +108,7 @@ TEST(PrinterProfile, NamesTheKeyThatIsWrong) {
   EXPECT_NE(complaint(profile).find("pixels_x"), std::string::npos);
   profile = {};
   profile.blur_sigma = -1.0_um;
-  EXPECT_NE(complaint(profile).find("blur_sigma_um"), std::string::npos);
+  EXPECT_NE(complaint(profile).find("[blur] sigma_um"), std::string::npos);
   profile = {};
   profile.layer = Length::from_um(std::nan(""));
   EXPECT_NE(complaint(profile).find("layer_um"), std::string::npos);
