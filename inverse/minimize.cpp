@@ -174,6 +174,7 @@ MinimizeResult minimize(const std::vector<Variable>& variables, const Objective&
   Border border(variables, objective, observer, options.max_evaluations);
   border.attach(optimizer.get());
   std::vector<double> unit;
+  unit.reserve(variables.size());
   for (const auto& variable : variables) unit.push_back(to_unit(variable, variable.start));
   double last = 0.0;
   const nlopt_result outcome = nlopt_optimize(optimizer.get(), unit.data(), &last);

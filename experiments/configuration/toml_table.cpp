@@ -134,7 +134,7 @@ std::string TomlTable::choice(std::string_view key, const std::vector<std::strin
 }
 
 std::filesystem::path TomlTable::file(std::string_view key) {
-  const std::filesystem::path path = text(key);
+  std::filesystem::path path = text(key);
   if (path.is_absolute() || was_set_by_hand(*table_->get(key))) return path;
   return file_->path().parent_path() / path;
 }
