@@ -22,7 +22,9 @@ constexpr const char* state_name = "run.json";
 bool is_empty_or_missing(const fs::path& folder) { return !fs::exists(folder) || fs::is_empty(folder); }
 
 // "runs/brushed/" and "runs/brushed" are one folder.
-fs::path without_trailing_slash(const fs::path& folder) { return folder.has_filename() ? folder : folder.parent_path(); }
+fs::path without_trailing_slash(const fs::path& folder) {
+  return folder.has_filename() ? folder : folder.parent_path();
+}
 
 // The lock ends with the process however that ends, and leaves no file. Where a file system knows no locks, there
 // is none.
