@@ -26,3 +26,7 @@ pkg_check_modules(NETTLE REQUIRED IMPORTED_TARGET nettle)
 find_library(NLOPT_CXX_LIBRARY nlopt_cxx REQUIRED)
 add_library(mezzotint_nlopt INTERFACE)
 target_link_libraries(mezzotint_nlopt INTERFACE ${NLOPT_CXX_LIBRARY})
+
+# SIMD with run-time dispatch. Debian's pkg-config file links the library; nothing else is needed.
+pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
+add_library(hwy::hwy ALIAS PkgConfig::HWY)
