@@ -3,7 +3,7 @@
 
 #include "experiments/command_line/command.h"
 #include "experiments/command_line/option_checks.h"
-#include "experiments/run/simulate.h"
+#include "experiments/configuration/experiment_file.h"
 #include "experiments/version.h"
 #include "forward/base/quantity.h"
 #include "forward/optics/microfacet.h"
@@ -23,22 +23,47 @@ struct BsdfArguments {
   std::string model = "paths";
   std::string normals = "geometric";
   std::string estimator = "flux";
+  std::string tracer = "height-field";
   std::size_t resolution = 64;
   double samples = 0.0;
-  double tolerance = 0.02;
+  double tolerance = 0.0;
+  double seconds = 0.0;
+  std::uint32_t max_bounces = 64;
+  std::uint32_t bounce_orders = 0;
+  bool resume = false;
 };
 
-Bsdf trace_samples(const HeightField& relief, const BsdfArguments& arguments, const SimulationSpecification& simulation,
-                   const DirectionAngles& incidence, std::uint64_t seed, const Progress& progress) {
-  return trace_bsdf(relief,
-                    {.incidence = incidence,
-                     .grid = {simulation.resolution, simulation.resolution},
-                     .material = simulation.material,
-                     .samples = static_cast<std::uint64_t>(arguments.samples),
-                     .estimator = arguments.estimator == "slides" ? Estimator::Slides : Estimator::Flux,
-                     .normals = arguments.normals == "interpolated" ? NormalKind::Interpolated : NormalKind::Geometric,
-                     .seed = seed},
-                    progress);
+constexpr double default_tolerance = 0.02;
+// Enough for 0.2 % of nearly any map; a run that wants more says so by --samples.
+constexpr double most_samples = 0x1p30;
+
+bool has_tolerance(const BsdfArguments& arguments) {
+  return arguments.tolerance > 0.0 || (arguments.samples <= 0.0 && arguments.seconds <= 0.0);
+}
+
+double tolerance_of(const BsdfArguments& arguments) {
+  if (arguments.tolerance > 0.0) return arguments.tolerance;
+  return has_tolerance(arguments) ? default_tolerance : 0.0;
+}
+
+std::filesystem::path state_file(const BsdfArguments& arguments) { return arguments.output + ".state"; }
+
+PathTracingOptions tracing_options(const BsdfArguments& arguments, std::uint64_t seed) {
+  PathTracingOptions options;
+  options.incidence = {Angle::from_degrees(arguments.incidence[0]), Angle::from_degrees(arguments.incidence[1])};
+  options.grid = {arguments.resolution, arguments.resolution};
+  options.material = parse_material(arguments.material);
+  options.samples = static_cast<std::uint64_t>(arguments.samples > 0.0 ? arguments.samples : most_samples);
+  options.tolerance = tolerance_of(arguments);
+  options.seconds = arguments.seconds;
+  options.max_bounces = arguments.model == "single" ? 1 : arguments.max_bounces;
+  options.bounce_orders = arguments.bounce_orders;
+  options.estimator = arguments.estimator == "slides" ? Estimator::Slides : Estimator::Flux;
+  options.normals = arguments.normals == "interpolated" ? NormalKind::Interpolated : NormalKind::Geometric;
+  options.tracer = arguments.tracer == "embree" ? TracerKind::Embree : TracerKind::HeightField;
+  if (arguments.resume) options.state = state_file(arguments);
+  options.seed = seed;
+  return options;
 }
 
 // The lowest rung: Gaussian slopes of the relief's own covariance. Exact maps, so no standard error.
@@ -58,15 +83,10 @@ Bsdf from_moments(const HeightField& relief, const SimulationSpecification& simu
   return bsdf;
 }
 
-Bsdf simulate_once(const HeightField& relief, const SimulationSpecification& simulation,
-                   const DirectionAngles& incidence, std::uint64_t seed, const Progress& progress) {
-  PathTracer tracer(relief);
-  return simulate(tracer, simulation, incidence, seed, progress);
-}
-
 Bsdf compute(const BsdfArguments& arguments, const CommandContext& context) {
-  require(arguments.model != "moments" || arguments.samples <= 0.0,
-          "the moments are a closed form: --samples and what goes with it mean nothing there");
+  const bool budget = arguments.samples > 0.0 || arguments.seconds > 0.0 || arguments.resume;
+  require(arguments.model != "moments" || !budget,
+          "the moments are a closed form: --samples, --time and --resume mean nothing there");
   require(std::filesystem::path(arguments.output).extension() == ".exr",
           arguments.output + ": a BSDF is written as .exr");
   require(arguments.incidence[0] >= 0.0 && arguments.incidence[0] <= 89.0,
@@ -76,14 +96,12 @@ Bsdf compute(const BsdfArguments& arguments, const CommandContext& context) {
   SimulationSpecification simulation;
   simulation.material = parse_material(arguments.material);
   simulation.resolution = arguments.resolution;
-  simulation.tolerance = arguments.tolerance;
   const DirectionAngles incidence{Angle::from_degrees(arguments.incidence[0]),
                                   Angle::from_degrees(arguments.incidence[1])};
   const std::uint64_t seed = context.common.seed >= 0 ? static_cast<std::uint64_t>(context.common.seed) : 1;
-  Bsdf bsdf = arguments.model == "moments" ? from_moments(surface.field, simulation, incidence)
-              : arguments.samples > 0.0
-                  ? trace_samples(surface.field, arguments, simulation, incidence, seed, context.progress)
-                  : simulate_once(surface.field, simulation, incidence, seed, context.progress);
+  Bsdf bsdf = arguments.model == "moments"
+                  ? from_moments(surface.field, simulation, incidence)
+                  : trace_bsdf(surface.field, tracing_options(arguments, seed), context.progress);
   bsdf.provenance["program"] = std::string("mezzotint ") + program_version;
   bsdf.provenance["source"] = std::filesystem::path(arguments.input).filename().string();
   return bsdf;
@@ -98,23 +116,32 @@ void add_arguments(CLI::App& app, BsdfArguments& arguments) {
       ->expected(2)
       ->required();
   app.add_option("--material", arguments.material,
-                 "mirror, dielectric:ETA or conductor:ETA,KAPPA (default dielectric:1.5)");
-  app.add_option("--model", arguments.model, "paths (default; auto means it too so far) or moments")
-      ->check(CLI::IsMember({"auto", "paths", "moments"}));
+                 "mirror, dielectric:ETA[,ABSORPTION per um] or conductor:ETA,KAPPA (default dielectric:1.5)");
+  app.add_option("--model", arguments.model,
+                 "paths (default; auto means it too so far), single (no second interaction) or moments")
+      ->check(CLI::IsMember({"auto", "paths", "single", "moments"}));
   app.add_option("--resolution", arguments.resolution, "Bins a side of the direction map (default 64)")
       ->check(CLI::Range(8, 1024));
-  auto* samples = app.add_option("--samples", arguments.samples,
-                                 "Number of paths, for example 1e6 (rounded up to at most twice that)")
-                      ->check(in_range(1.0, 6.8e10));
-  app.add_option("--tolerance", arguments.tolerance, "Relative standard error to reach (default 0.02)")
-      ->check(in_range(1e-4, 1.0))
-      ->excludes(samples);
-  app.add_option("--normals", arguments.normals, "geometric (default) or interpolated; with --samples")
-      ->check(CLI::IsMember({"geometric", "interpolated"}))
-      ->needs(samples);
-  app.add_option("--estimator", arguments.estimator, "flux (default) or slides, for comparison only; with --samples")
-      ->check(CLI::IsMember({"flux", "slides"}))
-      ->needs(samples);
+  app.add_option("--samples", arguments.samples,
+                 "At most so many paths, for example 1e6 (rounded up to at most twice that)")
+      ->check(in_range(1.0, 6.8e10));
+  app.add_option("--tolerance", arguments.tolerance,
+                 "Stop at this relative standard error (default 0.02, where neither --samples nor --time is given)")
+      ->check(in_range(1e-5, 1.0));
+  app.add_option("--time", arguments.seconds, "Stop after so many seconds")->check(in_range(0.01, 1e6));
+  app.add_flag("--resume", arguments.resume,
+               "Keep what was traced in OUT.exr.state, and go on from there: after Ctrl-C, or to refine");
+  app.add_option("--max-bounces", arguments.max_bounces, "Interactions a path may have (default 64)")
+      ->check(CLI::Range(1, 65536));
+  app.add_option("--bounce-orders", arguments.bounce_orders,
+                 "Keep the reflection apart by order of interaction: so many maps, the last for all higher orders")
+      ->check(CLI::Range(1, 64));
+  app.add_option("--normals", arguments.normals, "geometric (default) or interpolated")
+      ->check(CLI::IsMember({"geometric", "interpolated"}));
+  app.add_option("--tracer", arguments.tracer, "height-field (default) or embree, the independent reference")
+      ->check(CLI::IsMember({"height-field", "embree"}));
+  app.add_option("--estimator", arguments.estimator, "flux (default) or slides, for comparison only")
+      ->check(CLI::IsMember({"flux", "slides"}));
 }
 
 }  // namespace
@@ -133,13 +160,14 @@ Command add_bsdf(CLI::App& program) {
                 {{"written", arguments->output},
                  {"albedo", Quantity{albedo.value, "1", albedo.standard_error}},
                  {"transmitted", Quantity{bsdf.energy.transmitted.value, "1", bsdf.energy.transmitted.standard_error}},
+                 {"absorbed", Quantity{bsdf.energy.absorbed.value, "1", bsdf.energy.absorbed.standard_error}},
                  {"left_sideways",
                   Quantity{bsdf.energy.left_sideways.value, "1", bsdf.energy.left_sideways.standard_error}},
                  {"cut_off", Quantity{bsdf.energy.cut_off.value, "1", bsdf.energy.cut_off.standard_error}},
                  {"relative_standard_error", error}},
                 fmt::format("wrote {}: albedo {:.5f} ± {:.2g}, relative standard error of the map {:.2g}",
                             arguments->output, albedo.value, albedo.standard_error, error));
-            const bool fell_short = arguments->samples <= 0.0 && error > arguments->tolerance;
+            const bool fell_short = has_tolerance(*arguments) && error > tolerance_of(*arguments);
             return fell_short ? ExitStatus::ToleranceMissed : ExitStatus::Done;
           }};
 }

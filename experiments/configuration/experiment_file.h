@@ -37,7 +37,6 @@ struct SimulationSpecification {
   Material material = Dielectric{1.5};
   std::size_t resolution = 64;
   double tolerance = 0.02;  ///< wanted relative standard error of a map
-  std::uint64_t least_samples = std::uint64_t{1} << 18;
   std::uint64_t most_samples = std::uint64_t{1} << 24;
 };
 

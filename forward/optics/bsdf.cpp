@@ -29,18 +29,25 @@ constexpr std::size_t longest_key = 200;  // OpenEXR's names have 255 characters
 // 4096² bins of eight floats, that zip could not make smaller, and a header.
 constexpr std::uintmax_t largest_file_bytes = std::uintmax_t{600} << 20;
 
+std::string order_name(std::size_t order) { return "reflection.order_" + std::to_string(order + 1); }
+
 // One list of what the file holds, for the writer and the reader.
 template <class B>  // Bsdf or const Bsdf
 auto channels_of(B& bsdf) {
-  const auto entry = [](const char* name, auto& map) { return std::pair<std::string, decltype(&map)>(name, &map); };
-  return std::array{entry("reflection", bsdf.reflection.mean),
-                    entry("reflection.standard_error", bsdf.reflection.standard_error),
-                    entry("reflection.half_a", bsdf.reflection.half_a),
-                    entry("reflection.half_b", bsdf.reflection.half_b),
-                    entry("transmission", bsdf.transmission.mean),
-                    entry("transmission.standard_error", bsdf.transmission.standard_error),
-                    entry("transmission.half_a", bsdf.transmission.half_a),
-                    entry("transmission.half_b", bsdf.transmission.half_b)};
+  const auto entry = [](std::string name, auto& map) { return std::pair(std::move(name), &map); };
+  std::vector channels{entry("reflection", bsdf.reflection.mean),
+                       entry("reflection.standard_error", bsdf.reflection.standard_error),
+                       entry("reflection.half_a", bsdf.reflection.half_a),
+                       entry("reflection.half_b", bsdf.reflection.half_b),
+                       entry("transmission", bsdf.transmission.mean),
+                       entry("transmission.standard_error", bsdf.transmission.standard_error),
+                       entry("transmission.half_a", bsdf.transmission.half_a),
+                       entry("transmission.half_b", bsdf.transmission.half_b)};
+  for (std::size_t k = 0; k < bsdf.reflection_orders.size(); ++k) {
+    channels.push_back(entry(order_name(k), bsdf.reflection_orders[k].mean));
+    channels.push_back(entry(order_name(k) + ".standard_error", bsdf.reflection_orders[k].standard_error));
+  }
+  return channels;
 }
 
 template <class Audit>  // EnergyAudit or const EnergyAudit
@@ -118,6 +125,14 @@ void read_attributes(const OIIO::ImageSpec& spec, const fs::path& path, Bsdf& bs
   }
 }
 
+// So many maps by order of interaction does the file hold.
+std::size_t order_count(const OIIO::ImageSpec& spec) {
+  std::size_t count = 0;
+  const auto& names = spec.channelnames;
+  while (count < 64 && std::find(names.begin(), names.end(), order_name(count)) != names.end()) ++count;
+  return count;
+}
+
 void read_channels(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, const fs::path& path, Bsdf& bsdf) {
   const auto stride = static_cast<std::size_t>(spec.nchannels);
   for (const auto& [name, map] : channels_of(bsdf)) {
@@ -160,6 +175,7 @@ Bsdf read_exr(const fs::path& path) {
   Bsdf bsdf;
   bsdf.grid = {static_cast<std::size_t>(spec.width), static_cast<std::size_t>(spec.height)};
   read_attributes(spec, path, bsdf);
+  bsdf.reflection_orders.resize(order_count(spec));
   std::vector<float> pixels(bsdf.grid.size() * static_cast<std::size_t>(spec.nchannels));
   if (!file->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data())) {
     throw FileError(path, "pixels", "cannot be read whole; the file is truncated or damaged: " + file->geterror());

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "forward/optics/direction_map.h"
 
@@ -32,13 +33,16 @@ struct Bsdf {
   MapEstimate transmission;
   EnergyAudit energy;
   Provenance provenance;
+  /// The reflection by order of interaction (1, 2, …, the last: that order and above), means and
+  /// standard errors alone; empty unless asked for.
+  std::vector<MapEstimate> reflection_orders;
 };
 
 /// To OpenEXR: float channels "reflection", "reflection.standard_error", "reflection.half_a",
-/// "reflection.half_b", and the same for "transmission"; incidence, energy and provenance as attributes
-/// "mezzotint:…" (all as text or double). The picture's first line is y = −1, and an attribute says so.
-/// Written aside, then renamed; the same result gives the same bytes. Values are rounded to float. A
-/// provenance value that is empty is not kept.
+/// "reflection.half_b", the same for "transmission", "reflection.order_1" … with standard errors where kept; incidence,
+/// energy and provenance as attributes "mezzotint:…" (all as text or double). The picture's first line is y = −1, and
+/// an attribute says so. Written aside, then renamed; the same result gives the same bytes. Values are rounded to
+/// float. A provenance value that is empty is not kept.
 /// @throws InvalidInput for a map that has not one value a bin, or a provenance key of more than 200
 ///         characters; DeviceError where it cannot be written.
 void write_exr(const Bsdf& bsdf, const std::filesystem::path& path);

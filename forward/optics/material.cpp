@@ -12,7 +12,8 @@ namespace mezzotint {
 namespace {
 
 constexpr std::string_view forms =
-    "\"mirror\", \"dielectric:ETA\" (ETA from 1.0001 to 10) or \"conductor:ETA,KAPPA\" (ETA above 0, up to 20; "
+    "\"mirror\", \"dielectric:ETA\" (ETA from 1.0001 to 10), \"dielectric:ETA,ABSORPTION\" (per µm, 0 to 1000) or "
+    "\"conductor:ETA,KAPPA\" (ETA above 0, up to 20; "
     "KAPPA above 0, up to 50)";
 
 // The whole text as one finite number; nothing else.
@@ -24,9 +25,12 @@ std::optional<double> number(std::string_view text) {
 }
 
 std::optional<Material> dielectric(std::string_view arguments) {
-  const std::optional<double> eta = number(arguments);
+  const std::size_t comma = arguments.find(',');
+  const std::optional<double> eta = number(arguments.substr(0, comma));
+  const auto absorption = comma == std::string_view::npos ? std::optional(0.0) : number(arguments.substr(comma + 1));
   if (!eta || !(*eta >= 1.0001 && *eta <= 10.0)) return std::nullopt;
-  return Dielectric{*eta};
+  if (!absorption || !(*absorption >= 0.0 && *absorption <= 1000.0)) return std::nullopt;
+  return Dielectric{*eta, *absorption};
 }
 
 std::optional<Material> conductor(std::string_view arguments) {
@@ -59,7 +63,10 @@ std::string to_string(const Material& material) {
   // The shortest digits that read back as the same number.
   struct {
     std::string operator()(const Mirror&) const { return "mirror"; }
-    std::string operator()(const Dielectric& medium) const { return fmt::format("dielectric:{}", medium.eta); }
+    std::string operator()(const Dielectric& medium) const {
+      return medium.absorption_per_um == 0.0 ? fmt::format("dielectric:{}", medium.eta)
+                                             : fmt::format("dielectric:{},{}", medium.eta, medium.absorption_per_um);
+    }
     std::string operator()(const Conductor& metal) const {
       return fmt::format("conductor:{},{}", metal.eta, metal.kappa);
     }

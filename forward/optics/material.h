@@ -9,9 +9,10 @@ namespace mezzotint {
 
 /// Reflects everything: Fresnel 1 at every angle. For white furnaces and for the shape of a lobe.
 struct Mirror {};
-/// A clear medium, κ = 0: light refracts in and may come out again.
+/// A clear medium, κ = 0: light refracts in and may come out again; on its way inside it loses light by Beer–Lambert.
 struct Dielectric {
   double eta = 1.5;
+  double absorption_per_um = 0.0;
 };
 /// An opaque medium, index η + iκ with κ > 0: what is not reflected is absorbed.
 struct Conductor {
@@ -21,9 +22,9 @@ struct Conductor {
 /// The half-space under the relief, seen from air. Refractive indices are relative to air.
 using Material = std::variant<Mirror, Dielectric, Conductor>;
 
-/// "mirror", "dielectric:1.5", "conductor:0.2,3.0".
+/// "mirror", "dielectric:1.5", "dielectric:1.5,0.001" (absorption per µm), "conductor:0.2,3.0".
 /// @throws InvalidInput with the forms that are understood; η must be in [1.0001, 10] for a dielectric
-///         and in (0, 20] for a conductor, κ in (0, 50].
+///         and in (0, 20] for a conductor, κ in (0, 50], the absorption in [0, 1000].
 [[nodiscard]] Material parse_material(std::string_view text);
 [[nodiscard]] std::string to_string(const Material& material);
 

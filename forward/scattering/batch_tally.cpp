@@ -1,22 +1,46 @@
 #include "forward/scattering/batch_tally.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace mezzotint {
 
-void BatchTally::leave(Fate fate, const Direction& direction, double weight) {
+void BatchTally::leave(Fate fate, double x, double y, double weight, std::uint32_t order) {
   // A ray along the horizon may be a rounding error longer than 1; it belongs to the rim.
   constexpr double largest = 1.0 - 1e-12;
-  const double square = direction.x() * direction.x() + direction.y() * direction.y();
+  const double square = x * x + y * y;
   const double inward = square > largest ? std::sqrt(largest / square) : 1.0;
-  const std::size_t bin = grid.bin_of(direction.x() * inward, direction.y() * inward);
+  const std::size_t bin = grid.bin_of(x * inward, y * inward);
   (fate == Fate::Reflected ? reflected : transmitted)[bin] += weight;
+  if (fate == Fate::Reflected && !orders.empty()) {
+    orders[std::min<std::size_t>(order, orders.size()) - 1][bin] += weight;
+  }
+  const std::size_t map = fate == Fate::Reflected ? 0 : 1;
+  arrivals[map] += 1.0;
+  arrived_weight[map] += std::abs(weight);
   add(fate, weight);
 }
 
 void BatchTally::close_slice() {
   for (std::size_t k = 0; k < fate_count; ++k) total_energy[k] += energy[k];
   energy = {};
+}
+
+void BatchTally::add(const BatchTally& other) {
+  const auto add_map = [](DirectionMap& to, const DirectionMap& from) {
+    for (std::size_t k = 0; k < to.size(); ++k) to[k] += from[k];
+  };
+  add_map(reflected, other.reflected);
+  add_map(transmitted, other.transmitted);
+  for (std::size_t k = 0; k < orders.size(); ++k) add_map(orders[k], other.orders[k]);
+  for (std::size_t k = 0; k < fate_count; ++k) total_energy[k] += other.total_energy[k];
+  interactions += other.interactions;
+  for (std::size_t map = 0; map < 2; ++map) {
+    arrivals[map] += other.arrivals[map];
+    arrived_weight[map] += other.arrived_weight[map];
+  }
+  normal_fallbacks += other.normal_fallbacks;
+  leaked += other.leaked;
 }
 
 BatchStatistics::BatchStatistics(std::size_t size)

@@ -22,10 +22,15 @@ struct BatchTally {
       : grid(direction_grid), reflected(direction_grid.size()), transmitted(direction_grid.size()) {}
 
   void add(Fate fate, double weight) { energy[static_cast<std::size_t>(fate)] += weight; }
-  /// Light that leaves along `direction`: up into the map of reflection, or down into that of transmission.
-  void leave(Fate fate, const Direction& direction, double weight);
+  /// Light that leaves for good along a direction (x, y, ·) after `order` interactions: Reflected or Transmitted.
+  void leave(Fate fate, double x, double y, double weight, std::uint32_t order);
+  /// Keeps the reflection apart by order of interaction: maps for 1, 2, …, and the last for that order and above.
+  void keep_orders(std::uint32_t maps) { orders.assign(maps, DirectionMap(reflected.size())); }
   /// Moves the energies since the last call to the total: sums of sums stay exact to 1e-15 over 2^36 paths.
   void close_slice();
+
+  /// Adds another tally of the same shape.
+  void add(const BatchTally& other);
 
   DirectionGrid grid;
   DirectionMap reflected;
@@ -33,7 +38,10 @@ struct BatchTally {
   EnergyTally energy{};  ///< of the open slice
   EnergyTally total_energy{};
   std::uint64_t interactions = 0;
+  /// Entries into each of the two maps (reflection, transmission), and the sum of their absolute weights.
+  std::array<double, 2> arrivals{}, arrived_weight{};
   std::uint64_t normal_fallbacks = 0;  ///< interactions whose interpolated normal could not be used
+  std::vector<DirectionMap> orders;    ///< empty where not asked for
   double leaked = 0.0;                 ///< the part of CutOff that went through the surface by rounding
 };
 

@@ -1,5 +1,6 @@
 #include "forward/scattering/incident_light.h"
 
+#include <array>
 #include <cmath>
 
 #include "forward/base/error.h"
@@ -8,17 +9,20 @@ namespace mezzotint {
 
 namespace {
 
-// First rays start this far (cells) above the highest point.
+// Without a front rays start this far (cells) above the highest point.
 constexpr double start_clearance = 1e-2;
+constexpr std::size_t slice = 256;
 
 }  // namespace
 
-IncidentLight::IncidentLight(const PeriodicTile& tile, const PathTracingOptions& options, std::uint32_t strata_bits)
+IncidentLight::IncidentLight(const PeriodicTile& tile, const PathTracingOptions& options, const BeamFront* front)
     : tile_(tile),
-      strata_bits_(strata_bits),
-      strata_(strata_bits),
+      front_(front),
       to_light_(to_direction(options.incidence)),
-      positions_(options.seed, RandomPurpose::RayPosition),
+      columns_(tile.columns()),
+      rows_(tile.rows()),
+      aimed_columns_(tile.original_length_x()),
+      aimed_rows_(tile.original_length_y() / tile.cell_y()),
       directions_(options.seed, RandomPurpose::IncidentDirection) {
   if (!options.spread_incidence_over_bin) return;
   const std::size_t bin = options.grid.bin_of(to_light_.x(), to_light_.y());
@@ -41,15 +45,55 @@ Direction IncidentLight::direction_in_pixel(std::uint64_t index) const {
   }
 }
 
-Ray IncidentLight::ray(std::uint32_t batch, std::uint64_t stratum) const {
-  const std::uint64_t index = ray_index(batch, stratum);
-  const auto jitter = positions_.uniform4(index);
-  const auto [u, v] = strata_.point(stratum, jitter[0], jitter[1]);
-  const Eigen::Vector3d aim(u * tile_.original_length_x() - 0.5 * tile_.length_x(),
-                            v * tile_.original_length_y() - 0.5 * tile_.length_y(), tile_.mean());
-  const Direction to_light = pixel_ ? direction_in_pixel(index) : to_light_;
-  const double way_back = (tile_.highest() + start_clearance - tile_.mean()) / to_light.z();
-  return {aim + way_back * to_light, -to_light, Side::Outside, no_triangle};
+float IncidentLight::start_height(double aim_x, double aim_y) const {
+  if (front_ == nullptr || pixel_) return static_cast<float>(tile_.highest() + start_clearance);
+  return front_->height(static_cast<std::int32_t>(aim_x), static_cast<std::int32_t>(aim_y));
+}
+
+void IncidentLight::fill(const SampleStrata& strata, std::uint64_t first, std::uint64_t first_index, std::size_t count,
+                         AimedRays& aimed) const {
+  RayBatch& rays = aimed.rays;
+  std::array<double, slice> u{}, v{};
+  Direction light = to_light_;
+  double shift_x = light.x() / light.z(), shift_y = light.y() / (light.z() * tile_.cell_y());
+  for (std::size_t begin = 0; begin < count; begin += slice) {
+    const std::size_t here = std::min(slice, count - begin);
+    strata.points(first + begin, std::span(u).first(here), std::span(v).first(here));
+    for (std::size_t k = 0; k < here; ++k) {
+      const std::size_t at = begin + k;
+      if (pixel_) {
+        light = direction_in_pixel(first_index + at);
+        shift_x = light.x() / light.z();
+        shift_y = light.y() / (light.z() * tile_.cell_y());
+      }
+      const double aim_x = u[k] * aimed_columns_, aim_y = v[k] * aimed_rows_;
+      aimed.aim_x[at] = aim_x;
+      aimed.aim_y[at] = aim_y;
+      const float z = start_height(aim_x, aim_y);
+      const double rise = double{z} - tile_.mean();
+      const double x = aim_x + rise * shift_x, y = aim_y + rise * shift_y;
+      const double cell_x = std::floor(x), cell_y = std::floor(y);
+      rays.x[at] = static_cast<float>(x - cell_x);
+      rays.y[at] = static_cast<float>(y - cell_y);
+      rays.z[at] = z;
+      rays.cell_x[at] = static_cast<std::int32_t>(cell_x - columns_ * std::floor(cell_x / columns_));
+      rays.cell_y[at] = static_cast<std::int32_t>(cell_y - rows_ * std::floor(cell_y / rows_));
+      rays.dx[at] = static_cast<float>(-light.x());
+      rays.dy[at] = static_cast<float>(-light.y());
+      rays.dz[at] = static_cast<float>(-light.z());
+      rays.side[at] = Side::Outside;
+      rays.left[at] = no_half;
+    }
+  }
+}
+
+bool IncidentLight::met_a_copy(const AimedRays& rays, const HitBatch& hits, std::size_t k) const {
+  if (!tile_.mirrored()) return false;
+  // Where the ray is at the height of the hit, in as many tiles as it took.
+  const double fall = (double{hits.z[k]} - tile_.mean()) / double{rays.rays.dz[k]};
+  const double x = rays.aim_x[k] + fall * double{rays.rays.dx[k]};
+  const double y = rays.aim_y[k] + fall * double{rays.rays.dy[k]} / tile_.cell_y();
+  return x < 0.0 || y < 0.0 || x > aimed_columns_ || y > aimed_rows_;
 }
 
 }  // namespace mezzotint

@@ -2,43 +2,53 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "forward/base/random.h"
 #include "forward/scattering/path_tracing.h"
-#include "forward/scattering/periodic_tile.h"
-#include "forward/scattering/relief_tracer.h"
 #include "forward/scattering/sample_strata.h"
+#include "forward/tracing/beam_front.h"
+#include "forward/tracing/periodic_tile.h"
+#include "forward/tracing/ray_batch.h"
 
 namespace mezzotint {
 
-/// The first rays: aimed at stratified points of the measured part of the macrosurface (the plane of the mean
-/// height), so that each carries the same share of the light.
+/// First rays, and the points of the macrosurface (in cells of the tile) at which they aim.
+struct AimedRays {
+  explicit AimedRays(std::size_t capacity) : rays(capacity), aim_x(capacity), aim_y(capacity) {}
+  RayBatch rays;
+  std::vector<double> aim_x, aim_y;
+};
+
+/// The first rays: aimed at points of the measured part of the macrosurface (the plane of the mean height), so that
+/// each carries the same share of the light.
 class IncidentLight {
 public:
-  /// @param strata_bits  every batch has 2^strata_bits rays, one a stratum.
+  /// @param front  where the rays of one parallel beam may start; nullptr: above the highest point.
   /// @throws InvalidInput where the bin over which light is to be spread hardly meets the disc.
-  IncidentLight(const PeriodicTile& tile, const PathTracingOptions& options, std::uint32_t strata_bits);
+  IncidentLight(const PeriodicTile& tile, const PathTracingOptions& options, const BeamFront* front);
 
-  [[nodiscard]] std::uint64_t rays_per_batch() const { return std::uint64_t{1} << strata_bits_; }
-  /// The ray of one stratum of a batch; it starts above the relief, maybe many tiles away.
-  [[nodiscard]] Ray ray(std::uint32_t batch, std::uint64_t stratum) const;
-  /// The number of a ray among all of them, for the random numbers along its path.
-  [[nodiscard]] std::uint64_t ray_index(std::uint32_t batch, std::uint64_t stratum) const {
-    return batch * rays_per_batch() + stratum;
-  }
+  /// The rays of strata first … first + count − 1 into `rays`; `first_index` is the number of the first among all
+  /// rays of the run (for light that is spread over a bin).
+  void fill(const SampleStrata& strata, std::uint64_t first, std::uint64_t first_index, std::size_t count,
+            AimedRays& rays) const;
+  /// Whether a first hit lies in a mirrored copy: told by the way that its ray went.
+  [[nodiscard]] bool met_a_copy(const AimedRays& rays, const HitBatch& hits, std::size_t k) const;
+  [[nodiscard]] const Direction& to_light() const { return to_light_; }
 
 private:
   struct Pixel {
     double left, bottom, width, height;
   };
   [[nodiscard]] Direction direction_in_pixel(std::uint64_t index) const;
+  [[nodiscard]] float start_height(double aim_x, double aim_y) const;
 
   const PeriodicTile& tile_;
-  std::uint32_t strata_bits_;
-  SampleStrata strata_;
+  const BeamFront* front_;
   Direction to_light_;
+  double columns_, rows_;              ///< of the tile
+  double aimed_columns_, aimed_rows_;  ///< of its measured part
   std::optional<Pixel> pixel_;
-  RandomStream positions_;
   RandomStream directions_;
 };
 

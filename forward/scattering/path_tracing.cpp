@@ -2,28 +2,38 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
+#include "forward/base/digest.h"
 #include "forward/base/error.h"
 #include "forward/scattering/batch_tally.h"
 #include "forward/scattering/incident_light.h"
 #include "forward/scattering/path_walk.h"
-#include "forward/scattering/relief_scene.h"
+#include "forward/scattering/trace_result.h"
+#include "forward/scattering/trace_state.h"
+#include "forward/tracing/beam_front.h"
+#include "forward/tracing/height_field_tracer.h"
+#include "forward/tracing/relief_scene.h"
 
 namespace mezzotint {
 
 namespace {
 
-// Between two looks at `progress` every batch in flight walks this many paths, some 10 ms.
+// Between two looks at `progress` every batch walks this many paths, some milliseconds.
 constexpr std::uint64_t paths_per_slice = std::uint64_t{1} << 14;
+// The first of several passes: enough paths for a first idea of the error.
+constexpr std::uint64_t paths_of_first_pass = std::uint64_t{1} << 15;
+// The splat's rows are summed in so many groups, whatever the number of threads.
+constexpr std::uint32_t splat_groups = 16;
 
 void require_valid(const PathTracingOptions& options) {
   mezzotint::require_valid(options.grid);
@@ -35,122 +45,247 @@ void require_valid(const PathTracingOptions& options) {
   require(options.samples >= 1 && options.samples <= (std::uint64_t{1} << 36),
           "the number of samples must be from 1 to 2^36");
   require(options.max_bounces >= 1 && options.max_bounces <= 65536, "a path needs from 1 to 65536 interactions");
+  require(options.bounce_orders <= 64, "at most 64 orders of interaction can be kept apart");
+  require(options.tolerance >= 0.0 && options.seconds >= 0.0, "a tolerance or a time cannot be negative");
   if (const auto* dielectric = std::get_if<Dielectric>(&options.material)) {
     require(dielectric->eta >= 1.0001 && dielectric->eta <= 10.0,
             "the index of refraction of a dielectric must be from 1.0001 to 10");
+    require(dielectric->absorption_per_um >= 0.0, "an absorption cannot be negative");
   }
 }
 
-std::uint32_t strata_bits(const PathTracingOptions& options) {
-  const std::uint64_t least = (options.samples + options.batches - 1) / options.batches;
+std::uint32_t bits_for(std::uint64_t paths, std::uint32_t batches) {
+  const std::uint64_t least = std::max<std::uint64_t>(1, (paths + batches - 1) / batches);
   return static_cast<std::uint32_t>(std::bit_width(least - 1));
 }
 
-// How much of the result stands, while batches arrive in their order.
-struct Statistics {
-  explicit Statistics(const DirectionGrid& grid)
-      : reflected(grid.size()), transmitted(grid.size()), energy(fate_count) {}
-
-  void add(const BatchTally& tally) {
-    reflected.add(tally.reflected);
-    transmitted.add(tally.transmitted);
-    energy.add(tally.total_energy);
-    interactions += tally.interactions;
-    normal_fallbacks += tally.normal_fallbacks;
-    leaked += tally.leaked;
-  }
-
-  BatchStatistics reflected;
-  BatchStatistics transmitted;
-  BatchStatistics energy;
-  std::uint64_t interactions = 0;
-  std::uint64_t normal_fallbacks = 0;
-  double leaked = 0.0;
-};
-
-// Enough batches at once to keep all threads busy, as long as their maps fit into memory. The order of sums
-// does not depend on it.
-std::uint32_t batches_at_once(const PathTracingOptions& options) {
-  constexpr std::size_t memory = std::size_t{2} << 30;
-  const std::size_t batch_bytes = 2 * sizeof(double) * options.grid.size();
-  const std::size_t fit = std::max<std::size_t>(1, memory / batch_bytes);
-  const auto threads = static_cast<std::size_t>(std::max(1, tbb::this_task_arena::max_concurrency()));
-  return static_cast<std::uint32_t>(std::min({std::size_t{options.batches}, fit, 4 * threads}));
+// Paths of pass 0, 1, 2, …, a batch: 1, 1, 1, 1, 2, 2, 4, 4, 8, … times the first, so that a pass adds a third to a
+// half and a run that is refined later goes through the same passes.
+std::uint32_t pass_bits(std::uint32_t pass, std::uint32_t first_bits) {
+  return first_bits + (pass < 4 ? 0 : (pass - 2) / 2);
 }
 
-void walk_slice(const PathWalker& walker, const IncidentLight& light, std::uint32_t batch, std::uint64_t begin,
-                BatchTally& tally) {
-  const std::uint64_t end = std::min(begin + paths_per_slice, light.rays_per_batch());
-  for (std::uint64_t stratum = begin; stratum < end; ++stratum) {
-    walker.walk(light.ray(batch, stratum), light.ray_index(batch, stratum), tally);
-  }
-  tally.close_slice();
+bool splat_is_possible(const PathTracingOptions& options, const PeriodicTile& tile) {
+  const auto* clear = std::get_if<Dielectric>(&options.material);
+  return options.normals == NormalKind::Geometric && options.estimator == Estimator::Flux && !tile.mirrored() &&
+         !options.spread_incidence_over_bin && options.tracer == TracerKind::HeightField &&
+         (clear == nullptr || clear->absorption_per_um == 0.0);
 }
 
-Statistics walk_all(const PathWalker& walker, const IncidentLight& light, const PathTracingOptions& options,
-                    const Progress& progress) {
-  Statistics statistics(options.grid);
-  const std::uint32_t group = batches_at_once(options);
-  for (std::uint32_t first = 0; first < options.batches; first += group) {
-    const std::uint32_t count = std::min(group, options.batches - first);
-    std::vector<BatchTally> tallies(count, BatchTally(options.grid));
-    for (std::uint64_t begin = 0; begin < light.rays_per_batch(); begin += paths_per_slice) {
-      tbb::parallel_for(std::uint32_t{0}, count,
-                        [&](std::uint32_t k) { walk_slice(walker, light, first + k, begin, tallies[k]); });
-      const double of_group = static_cast<double>(std::min(begin + paths_per_slice, light.rays_per_batch())) /
-                              static_cast<double>(light.rays_per_batch());
-      report(progress, "trace", (first + count * of_group) / options.batches);
+double rms_gradient(const PeriodicTile& tile) {
+  double sum = 0.0;
+  for (std::uint32_t row = 0; row < tile.rows(); ++row) {
+    const std::uint32_t upper = row + 1 == tile.rows() ? 0 : row + 1;
+    for (std::uint32_t column = 0; column < tile.columns(); ++column) {
+      const std::uint32_t right = column + 1 == tile.columns() ? 0 : column + 1;
+      const double z = tile.height(column, row);
+      const double a = tile.height(right, row) - z, b = (tile.height(column, upper) - z) / tile.cell_y();
+      sum += a * a + b * b;
     }
-    for (const BatchTally& tally : tallies) statistics.add(tally);
   }
-  return statistics;
+  return std::sqrt(sum / (double{1} * tile.columns() * tile.rows()));
 }
 
-// Tallies of weight to 1/sr: by the light that met the measured part, and the projected solid angle of the bin.
-std::vector<double> map_scale(const DirectionGrid& grid, double light_that_met) {
-  std::vector<double> scale = projected_solid_angles(grid);
-  for (double& area : scale) area = area > 0.0 ? 1.0 / (light_that_met * area) : 0.0;
-  return scale;
-}
-
-EnergyAudit audit(const BatchStatistics& energy, double rays_per_batch) {
-  const std::vector<double> scale(fate_count, 1.0 / rays_per_batch);
-  const MapEstimate shares = energy.estimate(scale);
-  const auto share = [&](Fate fate) {
-    const auto k = static_cast<std::size_t>(fate);
-    return Estimate{shares.mean[k], shares.standard_error[k]};
-  };
-  return {share(Fate::Reflected), share(Fate::Transmitted), share(Fate::Absorbed), share(Fate::LeftSideways),
-          share(Fate::CutOff)};
-}
-
-Provenance provenance(const PathTracingOptions& options, const Statistics& statistics, std::uint64_t samples) {
-  const double fallbacks = static_cast<double>(statistics.normal_fallbacks) /
-                           static_cast<double>(std::max<std::uint64_t>(1, statistics.interactions));
-  return {{"model", "paths"},
-          {"tracer", "embree"},
-          {"estimator", options.estimator == Estimator::Flux ? "flux" : "slides"},
-          {"material", to_string(options.material)},
-          {"normals", options.normals == NormalKind::Geometric ? "geometric" : "interpolated"},
-          {"samples", std::to_string(samples)},
-          {"batches", std::to_string(options.batches)},
-          {"seed", std::to_string(options.seed)},
-          {"max_bounces", std::to_string(options.max_bounces)},
-          {"incidence_spread", options.spread_incidence_over_bin ? "bin" : "none"},
-          {"interactions_per_path",
-           fmt::format("{:.6g}", static_cast<double>(statistics.interactions) / static_cast<double>(samples))},
-          {"normal_fallback_share", fmt::format("{:.6g}", fallbacks)},
-          {"leaked_share", fmt::format("{:.6g}", statistics.leaked / static_cast<double>(samples))}};
+bool use_splat(const PathTracingOptions& options, const PeriodicTile& tile, double gradient) {
+  if (options.control_variate == ControlVariate::Off) return false;
+  const bool possible = splat_is_possible(options, tile);
+  require(
+      possible || options.control_variate == ControlVariate::Automatic,
+      "the control variate needs geometric normals, a periodic field, one direction of the light, the flux estimator, "
+      "no absorption and the height-field tracer");
+  const double steepness = gradient * std::tan(options.incidence.theta.radians());
+  return possible && (options.control_variate == ControlVariate::On || steepness < control_variate_limit);
 }
 
 }  // namespace
 
 struct PathTracer::Scene {
-  explicit Scene(const HeightField& field) : tile(field), triangles(tile) {}
+  explicit Scene(const HeightField& field) : tile(field) {}
+
+  const HeightFieldTracer& height_field() {
+    if (!fast) fast.emplace(tile);
+    return *fast;
+  }
+  const ReliefTracer& tracer(TracerKind kind) {
+    if (kind == TracerKind::HeightField) return height_field();
+    if (!triangles) triangles.emplace(tile);
+    return *triangles;
+  }
+  double gradient() {
+    if (!known_gradient) known_gradient = rms_gradient(tile);
+    return *known_gradient;
+  }
+  std::string digest() const {
+    std::string text;
+    for (std::uint32_t row = 0; row < tile.rows(); ++row)
+      for (std::uint32_t column = 0; column < tile.columns(); ++column) {
+        const float z = tile.height(column, row);
+        text.append(reinterpret_cast<const char*>(&z), sizeof(z));
+      }
+    return sha256_hex({reinterpret_cast<const std::byte*>(text.data()), text.size()});
+  }
+
   PeriodicTile tile;
-  ReliefScene triangles;
+  std::optional<HeightFieldTracer> fast;
+  std::optional<ReliefScene> triangles;
+  std::optional<double> known_gradient;
   bool has_normals = false;
 };
+
+namespace {
+
+/// One call of trace: passes until the budget or the tolerance is met.
+class Run {
+public:
+  Run(const PeriodicTile& tile, const ReliefTracer& tracer, const HeightFieldTracer* fast, bool splat,
+      const PathTracingOptions& options, const Progress& progress)
+      : tile_(tile),
+        options_(options),
+        progress_(progress),
+        walker_(tile, tracer, options),
+        splat_(splat),
+        start_(std::chrono::steady_clock::now()) {
+    if (!splat && fast != nullptr && !options.spread_incidence_over_bin) {
+      front_.emplace(fast->pyramid(), -to_direction(options.incidence), tile.mean());
+    }
+    light_.emplace(tile, options, front_ ? &*front_ : nullptr);
+    BatchTally empty(options.grid);
+    if (options.bounce_orders > 0) empty.keep_orders(options.bounce_orders);
+    state_.tallies.assign(options.batches, empty);
+    single_scattering_.emplace(empty);
+  }
+
+  void resume(const std::string& run) {
+    run_ = run;
+    if (!options_.state.empty()) read_state(options_.state, run_, state_);
+  }
+
+  TraceResult go() {
+    if (splat_) splat_all();
+    const bool stepwise = options_.tolerance > 0.0 || options_.seconds > 0.0 || !options_.state.empty();
+    const std::uint32_t whole = bits_for(options_.samples, options_.batches);
+    const std::uint32_t first = stepwise ? std::min(whole, bits_for(paths_of_first_pass, options_.batches)) : whole;
+    while (!done(whole)) {
+      const std::uint32_t bits = stepwise ? pass_bits(state_.passes, first) : whole;
+      pass(bits);
+      state_.convergence.push_back({paths(), error()});
+      if (!options_.state.empty()) write_state(options_.state, run_, state_);
+    }
+    return result();
+  }
+
+private:
+  [[nodiscard]] std::uint64_t paths() const { return state_.rays_per_batch * options_.batches; }
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  [[nodiscard]] bool done(std::uint32_t whole) const {
+    if (state_.passes == 0) return false;
+    if (state_.rays_per_batch >= (std::uint64_t{1} << whole)) return true;
+    if (options_.tolerance > 0.0 && state_.convergence.back().error <= options_.tolerance) return true;
+    return options_.seconds > 0.0 && seconds() >= options_.seconds;
+  }
+  [[nodiscard]] TraceResult result() const {
+    return summarise(options_, state_, splat_ ? &*single_scattering_ : nullptr, 2.0 * tile_.columns() * tile_.rows());
+  }
+  [[nodiscard]] double error() const { return relative_error(options_.grid, result().bsdf.reflection); }
+
+  void splat_all() {
+    std::vector<BatchTally> groups(splat_groups, *single_scattering_);
+    tbb::parallel_for(std::uint32_t{0}, splat_groups, [&](std::uint32_t group) {
+      WalkSpace& space = spaces_.local();
+      const std::uint64_t rows = tile_.rows();
+      for (std::uint64_t row = rows * group / splat_groups; row < rows * (group + 1) / splat_groups; ++row) {
+        walker_.splat_row(static_cast<std::uint32_t>(row), space, groups[group]);
+        groups[group].close_slice();
+      }
+    });
+    for (const BatchTally& group : groups) single_scattering_->add(group);
+  }
+
+  void pass(std::uint32_t bits) {
+    const std::uint64_t rays = std::uint64_t{1} << bits;
+    const std::uint64_t traced = paths();
+    for (std::uint64_t begin = 0; begin < rays; begin += paths_per_slice) {
+      const std::uint64_t count = std::min(paths_per_slice, rays - begin);
+      tbb::parallel_for(std::uint32_t{0}, options_.batches,
+                        [&](std::uint32_t batch) { slice(batch, bits, begin, count, traced + batch * rays); });
+      tell(begin + count, rays);
+    }
+    state_.rays_per_batch += rays;
+    ++state_.passes;
+  }
+
+  void slice(std::uint32_t batch, std::uint32_t bits, std::uint64_t begin, std::uint64_t count, std::uint64_t number) {
+    WalkSpace& space = spaces_.local();
+    BatchTally& tally = state_.tallies[batch];
+    const SampleStrata strata(bits, options_.placement, options_.seed, state_.passes, batch);
+    for (std::uint64_t first = begin; first < begin + count; first += rays_together) {
+      const std::size_t here = static_cast<std::size_t>(std::min<std::uint64_t>(rays_together, begin + count - first));
+      if (splat_)
+        walker_.correct(strata, first, number + first, here, space, tally);
+      else
+        walker_.walk(*light_, strata, first, number + first, here, space, tally);
+    }
+    tally.close_slice();
+  }
+
+  void tell(std::uint64_t of_pass, std::uint64_t rays) {
+    if (!progress_) return;
+    const double now = static_cast<double>(state_.rays_per_batch + of_pass) * options_.batches;
+    double goal = static_cast<double>(std::uint64_t{options_.batches} << bits_for(options_.samples, options_.batches));
+    std::string note;
+    if (!state_.convergence.empty()) {
+      const auto& last = state_.convergence.back();
+      note = fmt::format("standard error {:.2g} % after {:.3g} paths", 100.0 * last.error,
+                         static_cast<double>(last.paths));
+      if (options_.tolerance > 0.0 && last.error > 0.0)
+        goal = std::min(goal, static_cast<double>(last.paths) * std::pow(last.error / options_.tolerance, 2.0));
+    }
+    double fraction = std::min(1.0, now / goal);
+    if (options_.seconds > 0.0) fraction = std::max(fraction, std::min(1.0, seconds() / options_.seconds));
+    // A pass that goes beyond what seemed to be needed is nearly done.
+    if (of_pass < rays) fraction = std::min(fraction, 0.99);
+    report(progress_, "trace", fraction, note);
+  }
+
+  const PeriodicTile& tile_;
+  const PathTracingOptions& options_;
+  const Progress& progress_;
+  std::optional<BeamFront> front_;
+  std::optional<IncidentLight> light_;
+  PathWalker walker_;
+  bool splat_;
+  std::chrono::steady_clock::time_point start_;
+  std::string run_;
+  TraceState state_;
+  std::optional<BatchTally> single_scattering_;
+  tbb::enumerable_thread_specific<WalkSpace> spaces_;
+};
+
+// All that a state depends on, but for the budget.
+std::string run_digest(const std::string& relief, const PathTracingOptions& options, bool splat) {
+  const std::string text = fmt::format(
+      "{} {:a} {:a} {} {}x{} {} batches {} bounces {} orders {} estimator {} normals {} tracer {} placement {} splat "
+      "{} seed {}",
+      relief, options.incidence.theta.radians(), options.incidence.phi.radians(), options.spread_incidence_over_bin,
+      options.grid.width, options.grid.height, to_string(options.material), options.batches, options.max_bounces,
+      options.bounce_orders, static_cast<int>(options.estimator), static_cast<int>(options.normals),
+      static_cast<int>(options.tracer), static_cast<int>(options.placement), splat, options.seed);
+  return sha256_hex({reinterpret_cast<const std::byte*>(text.data()), text.size()});
+}
+
+}  // namespace
+
+double relative_error(const DirectionGrid& grid, const MapEstimate& map) {
+  const auto areas = projected_solid_angles(grid);
+  double noise = 0.0, power = 0.0;
+  for (std::size_t bin = 0; bin < areas.size(); ++bin) {
+    noise += areas[bin] * map.standard_error[bin] * map.standard_error[bin];
+    power += areas[bin] * map.mean[bin] * map.mean[bin];
+  }
+  return power > 0.0 ? std::sqrt(noise / power) : 0.0;
+}
 
 PathTracer::PathTracer(const HeightField& field) : scene_(std::make_unique<Scene>(field)) {}
 PathTracer::~PathTracer() = default;
@@ -161,29 +296,17 @@ Bsdf PathTracer::trace(const PathTracingOptions& options, const Progress& progre
     scene_->tile.prepare_normals();
     scene_->has_normals = true;
   }
-  const IncidentLight light(scene_->tile, options, strata_bits(options));
-  const Statistics statistics =
-      walk_all(PathWalker(scene_->tile, scene_->triangles, options), light, options, progress);
-
-  Bsdf bsdf;
-  bsdf.incidence = options.incidence;
-  bsdf.grid = options.grid;
-  const auto rays = static_cast<double>(light.rays_per_batch());
-  bsdf.energy = audit(statistics.energy, rays);
-  const double met = 1.0 - bsdf.energy.left_sideways.value;
-  if (!(met > 0.0)) {
-    throw MethodError("all light met mirrored copies before the measured patch; it is too small for this incidence");
-  }
-  const std::vector<double> scale = map_scale(options.grid, met * rays);
-  bsdf.reflection = statistics.reflected.estimate(scale);
-  bsdf.transmission = statistics.transmitted.estimate(scale);
-  bsdf.provenance = provenance(options, statistics, options.batches * light.rays_per_batch());
-  return bsdf;
+  const bool splat = use_splat(options, scene_->tile, scene_->gradient());
+  const bool height_field = options.tracer == TracerKind::HeightField;
+  if (!height_field && !scene_->triangles) report(progress, "trace", 0.0, "building the tree of triangles");
+  const HeightFieldTracer* fast = height_field ? &scene_->height_field() : nullptr;
+  Run run(scene_->tile, scene_->tracer(options.tracer), fast, splat, options, progress);
+  if (!options.state.empty()) run.resume(run_digest(scene_->digest(), options, splat));
+  return run.go().bsdf;
 }
 
 Bsdf trace_bsdf(const HeightField& field, const PathTracingOptions& options, const Progress& progress) {
-  require_valid(options);  // before the tree is built
-  report(progress, "trace", 0.0, "building the tree of triangles");
+  require_valid(options);  // before anything is built
   return PathTracer(field).trace(options, progress);
 }
 

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 
 #include "forward/base/progress.h"
 #include "forward/optics/bsdf.h"
 #include "forward/optics/material.h"
+#include "forward/scattering/sample_strata.h"
 #include "forward/surface/height_field.h"
 
 namespace mezzotint {
@@ -23,6 +25,24 @@ enum class NormalKind {
                 ///< ray through the surface, and the share of such hits is reported
 };
 
+/// What finds the facet that a ray meets.
+enum class TracerKind {
+  HeightField,  ///< HeightFieldTracer: watertight, many rays at once
+  Embree        ///< ReliefScene: the independent reference
+};
+
+/// Whether single scattering comes from a dense splat of all facets, and rays only correct it.
+enum class ControlVariate {
+  Automatic,  ///< where it pays: s·tanθ below `control_variate_limit`
+  Off,
+  On  ///< refused where it is not possible: interpolated normals, mirrored fields, absorption, Estimator::Slides, light
+      ///< spread over a bin, Embree
+};
+
+/// Above this product of the RMS gradient s and tanθ, points on the surface lie in shadow so often that a beam aimed
+/// from above is the better estimator (measured: see docs/physics.md).
+inline constexpr double control_variate_limit = 1.3;
+
 struct PathTracingOptions {
   DirectionAngles incidence;
   /// Light from all directions of the map's bin that holds `incidence`, uniformly in projected solid
@@ -30,21 +50,36 @@ struct PathTracingOptions {
   bool spread_incidence_over_bin = false;
   DirectionGrid grid;
   Material material = Dielectric{};
-  /// Paths in all; rounded up to batches × a power of two (a batch is one set of Morton strata), so at most
-  /// doubled. Time is linear in it.
+  /// The most paths; rounded up to batches × a power of two (a batch is one set of Morton strata), so at most
+  /// doubled. Time is linear in it. Without `tolerance` and `seconds` all are traced in one pass.
   std::uint64_t samples = 1U << 20;
+  /// Stop earlier, at this relative standard error of the reflection √(Σ a·se² / Σ a·f²), a = pixel ∩ disc; 0: no.
+  double tolerance = 0.0;
+  /// Stop earlier, after so many seconds; 0: no. The result then depends on the machine.
+  double seconds = 0.0;
   /// Independent randomisations, from which the standard errors come; even, at least 4.
   std::uint32_t batches = 32;
-  /// Interactions a path may have. What is cut off is reported.
+  /// Interactions a path may have. What is cut off is reported. 1: single scattering with traced visibility.
   std::uint32_t max_bounces = 64;
+  /// Maps of the reflection by order of interaction, kept apart: so many; the last holds all higher orders. 0: none.
+  std::uint32_t bounce_orders = 0;
   Estimator estimator = Estimator::Flux;
   NormalKind normals = NormalKind::Geometric;
+  TracerKind tracer = TracerKind::HeightField;
+  Placement placement = Placement::Strata;
+  ControlVariate control_variate = ControlVariate::Automatic;
+  /// Where to keep what was traced: read at the start if the file exists, written after every pass. Going on gives the
+  /// same bits as never having stopped; a run may be refined later with more samples or a smaller tolerance.
+  std::filesystem::path state;
   std::uint64_t seed = 1;
 };
 
-/// The BSDF of a relief by path tracing with Embree: rays aimed at stratified points of the macro area,
-/// in Morton order; Fresnel at every interaction; both branches of the first kept by expected value,
-/// Russian roulette between reflection and refraction at deeper ones.
+/// Relative standard error of a map: √(Σ a·se² / Σ a·f²), a = pixel ∩ disc.
+[[nodiscard]] double relative_error(const DirectionGrid& grid, const MapEstimate& map);
+
+/// The BSDF of a relief by path tracing: rays at stratified points of the macro area, in Morton order; Fresnel at every
+/// interaction; both branches of the first kept by expected value, Russian roulette between reflection and refraction
+/// at deeper ones; where it pays, single scattering by a dense splat of all facets, which rays only correct.
 ///
 /// Ends     a periodic field continues periodically; a mirrored one has its rays aimed at the original (in the
 ///          plane of the mean height) and is continued by mirrored copies; light whose first interaction is with
@@ -53,17 +88,19 @@ struct PathTracingOptions {
 /// Energy   the audit sums to 1 (Estimator::Slides: it does not, and its excess over 1 is what it creates). Light
 ///          that rounding lets through the surface is part of `cut_off` and stands as "leaked_share" in the
 ///          provenance; "normal_fallback_share" is the share of interactions whose interpolated normal would
-///          have sent light through the surface.
+///          have sent light through the surface. With the control variate the shares are estimates whose sum is known
+///          to be 1: that is used to lower their noise, and "unadjusted_energy" tells the sum before.
 /// Errors   InvalidInput for incidence ≥ 90°, fewer than 2×2 samples or more than 2^28, a field with missing
 ///          samples (fill them first), more than 2^36 paths, batches that are odd or fewer than 4. DeviceError
-///          where Embree fails. MethodError where all light meets mirrored copies. What `progress` throws.
-/// Memory   some 170 bytes a cell (four times that for a mirrored field), 16 bytes a bin and batch in flight.
-/// Bits     the same for the same options and field with any number of threads.
-/// Source   Frisvad 2019, slides "BRDF measurement"; the weight is corrected (the slides' one multiplies by
-///          (ω_s·m)/cosθ_i, which belongs to points uniform on the microsurface).
+///          where Embree fails. MethodError where all light meets mirrored copies. FileError for a state that is
+///          damaged or belongs to another run. What `progress` throws.
+/// Memory   12 bytes a cell (Embree: 170; four times as much for a mirrored field), 16 bytes a bin and batch.
+/// Bits     the same for the same options and field with any number of threads (not where `seconds` ended it).
+/// Source   Frisvad 2019, slides "BRDF measurement", "Progressive updates"; the weight is corrected (the slides' one
+///          multiplies by (ω_s·m)/cosθ_i, which belongs to points uniform on the microsurface).
 class PathTracer {
 public:
-  /// Builds the tree of triangles, once for all directions of the light.
+  /// Builds what the tracers need, once for all directions of the light.
   explicit PathTracer(const HeightField& field);
   ~PathTracer();
   PathTracer(const PathTracer&) = delete;

@@ -1,108 +1,338 @@
 #include "forward/scattering/path_walk.h"
 
-#include "forward/scattering/surface_interaction.h"
+#include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace mezzotint {
-
-struct PathWalker::Path {
-  Ray ray;
-  double weight = 1.0;
-  Direction last_normal;
-  double cos_incident = 1.0;  ///< of the first ray, about the macrosurface
-  std::uint64_t ray_index = 0;
-  std::uint32_t branch = 0;  ///< 0 was reflected first, 1 refracted: they draw different random numbers
-  std::uint32_t interactions = 0;
-
-  void turn(const SurfaceHit& hit, const Direction& direction, Side side, const Direction& normal) {
-    ray = {hit.position, direction, side, hit.triangle};
-    last_normal = normal;
-  }
-};
 
 namespace {
 
 Side other(Side side) { return side == Side::Outside ? Side::Inside : Side::Outside; }
-
-void count(const SurfaceInteraction& met, BatchTally& tally) {
-  ++tally.interactions;
-  if (met.normal_fell_back) ++tally.normal_fallbacks;
-}
 
 void leak(double weight, BatchTally& tally) {
   tally.add(Fate::CutOff, weight);
   tally.leaked += weight;
 }
 
+enum class Branch { Reflected, Refracted };
+
+bool is_exit(RayEnd end, Side side) { return end == (side == Side::Outside ? RayEnd::Above : RayEnd::Below); }
+
+// Light from a facet into the open, whatever stands in its way: the splat.
+void leave_unhindered(Branch branch, const Eigen::Vector3f& way, double weight, BatchTally& tally) {
+  const bool up = branch == Branch::Reflected;
+  if (up ? way.z() <= 0.0F : way.z() >= 0.0F) return;
+  tally.leave(up ? Fate::Reflected : Fate::Transmitted, double{way.x()}, double{way.y()}, weight, 1);
+}
+
+// The path that goes on from hit k.
+void push(const WalkSpace& space, std::size_t k, Branch branch, Side side, float weight, std::uint64_t number,
+          std::uint8_t first_branch, PathBatch& next) {
+  const HitBatch& hits = space.hits;
+  const InteractionBatch& met = space.met;
+  const std::size_t at = next.count++;
+  RayBatch& rays = next.rays;
+  rays.cell_x[at] = hits.cell_x[k];
+  rays.cell_y[at] = hits.cell_y[k];
+  rays.x[at] = hits.x[k];
+  rays.y[at] = hits.y[k];
+  rays.z[at] = hits.z[k];
+  const bool reflected = branch == Branch::Reflected;
+  rays.dx[at] = reflected ? met.reflected_x[k] : met.refracted_x[k];
+  rays.dy[at] = reflected ? met.reflected_y[k] : met.refracted_y[k];
+  rays.dz[at] = reflected ? met.reflected_z[k] : met.refracted_z[k];
+  rays.side[at] = side;
+  rays.left[at] = hits.triangle[k];
+  next.weight[at] = weight;
+  next.number[at] = number;
+  next.branch[at] = first_branch;
+}
+
+// The cosine of a path's way about the normal of the facet that it leaves: the same as that of its arrival.
+float departure_cosine(const HitBatch& hits, const RayBatch& rays, std::size_t k) {
+  const float a = hits.slope_x[k], b = hits.slope_y[k];
+  return std::abs(rays.dz[k] - a * rays.dx[k] - b * rays.dy[k]) / std::sqrt(1.0F + a * a + b * b);
+}
+
 }  // namespace
 
 PathWalker::PathWalker(const PeriodicTile& tile, const ReliefTracer& tracer, const PathTracingOptions& options)
-    : tile_(tile), tracer_(tracer), options_(options), choices_(options.seed, RandomPurpose::RayChoice) {}
-
-bool PathWalker::met_a_copy(const Ray& first, const SurfaceHit& hit) const {
-  if (!tile_.mirrored()) return false;
-  const Eigen::Vector3d place = first.origin + hit.distance * first.direction;
-  const double x = place.x() + 0.5 * tile_.length_x(), y = place.y() + 0.5 * tile_.length_y();
-  return x < 0.0 || y < 0.0 || x > tile_.original_length_x() || y > tile_.original_length_y();
-}
-
-double PathWalker::choice(const Path& path) const {
-  return choices_.uniform4(path.ray_index, (path.branch << 24) + path.interactions / 4)[path.interactions % 4];
-}
-
-void PathWalker::walk(const Ray& first, std::uint64_t ray_index, BatchTally& tally) const {
-  SurfaceHit hit;
-  if (tracer_.closest_hit(first, hit) != RayEnd::Surface) return leak(1.0, tally);
-  if (met_a_copy(first, hit)) return tally.add(Fate::LeftSideways, 1.0);
-  const SurfaceInteraction met = interact(tile_, options_.material, options_.normals, first, hit);
-  count(met, tally);
-  Path path;
-  path.ray_index = ray_index;
-  path.cos_incident = -first.direction.z();
-  path.interactions = 1;
-  path.weight = met.reflectance;
-  path.turn(hit, met.reflected, Side::Outside, met.normal);
-  if (path.weight > 0.0) follow(path, tally);
-  path.weight = 1.0 - met.reflectance;
-  if (!met.refracts) return tally.add(Fate::Absorbed, path.weight);
-  path.branch = 1;
-  path.turn(hit, met.refracted, Side::Inside, met.normal);
-  follow(path, tally);
-}
-
-void PathWalker::follow(Path path, BatchTally& tally) const {
-  SurfaceHit hit;
-  for (;;) {
-    const RayEnd end = tracer_.closest_hit(path.ray, hit);
-    if (end != RayEnd::Surface) return end_path(path, end, tally);
-    if (path.interactions == options_.max_bounces) return tally.add(Fate::CutOff, path.weight);
-    meet_again(path, hit, tally);
+    : tile_(tile),
+      tracer_(tracer),
+      options_(options),
+      choices_(options.seed, RandomPurpose::RayChoice),
+      to_light_(to_direction(options.incidence)) {
+  if (const auto* clear = std::get_if<Dielectric>(&options.material)) {
+    absorption_per_cell_ = clear->absorption_per_um * tile.unit_um();
   }
 }
 
-void PathWalker::meet_again(Path& path, const SurfaceHit& hit, BatchTally& tally) const {
-  const SurfaceInteraction met = interact(tile_, options_.material, options_.normals, path.ray, hit);
-  count(met, tally);
-  if (!met.refracts) {
-    tally.add(Fate::Absorbed, path.weight * (1.0 - met.reflectance));
-    path.weight *= met.reflectance;
-    path.turn(hit, met.reflected, path.ray.side, met.normal);
-  } else if (choice(path) < met.reflectance) {
-    path.turn(hit, met.reflected, path.ray.side, met.normal);
+void PathWalker::interact(const RayBatch& rays, std::size_t count, WalkSpace& space) const {
+  if (options_.normals == NormalKind::Geometric) {
+    interact_geometric(options_.material, rays, space.hits, count, space.met);
   } else {
-    path.turn(hit, met.refracted, other(path.ray.side), met.normal);
+    interact_one_by_one(tile_, options_.material, options_.normals, rays, space.hits, count, space.met);
   }
-  ++path.interactions;
 }
 
-void PathWalker::end_path(const Path& path, RayEnd end, BatchTally& tally) const {
-  const Direction& way = path.ray.direction;
-  if (end == RayEnd::Above && path.ray.side == Side::Outside) {
-    const bool slides = options_.estimator == Estimator::Slides;
-    const double factor = slides ? way.dot(path.last_normal) / path.cos_incident : 1.0;
-    return tally.leave(Fate::Reflected, way, path.weight * factor);
+void PathWalker::walk(const IncidentLight& light, const SampleStrata& strata, std::uint64_t first,
+                      std::uint64_t first_index, std::size_t count, WalkSpace& space, BatchTally& tally) const {
+  light.fill(strata, first, first_index, count, space.aimed);
+  const RayBatch& rays = space.aimed.rays;
+  tracer_.closest_hits(rays, count, space.hits);
+  interact(rays, count, space);
+  for (std::size_t k = 0; k < count; ++k) {
+    space.start_weight[k] = 0.0F;
+    if (space.hits.end[k] != RayEnd::Surface) {
+      leak(1.0, tally);
+    } else if (light.met_a_copy(space.aimed, space.hits, k)) {
+      tally.add(Fate::LeftSideways, 1.0);
+    } else {
+      space.start_weight[k] = 1.0F;
+    }
   }
-  if (end == RayEnd::Below && path.ray.side == Side::Inside) return tally.leave(Fate::Transmitted, way, path.weight);
-  leak(path.weight, tally);
+  split(rays, count, first_index, space, tally);
+  follow(First::Counts, space, tally);
+}
+
+// The first interaction: both branches go on, weighted.
+void PathWalker::split(const RayBatch& rays, std::size_t count, std::uint64_t first_index, WalkSpace& space,
+                       BatchTally& tally) const {
+  PathBatch& next = space.paths[0];
+  next.count = 0;
+  double absorbed = 0.0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const float weight = space.start_weight[k];
+    if (weight == 0.0F) continue;
+    ++tally.interactions;
+    const float share = space.met.reflectance[k];
+    if (share > 0.0F) push(space, k, Branch::Reflected, Side::Outside, weight * share, first_index + k, 0, next);
+    if (space.met.refracts[k] != 0) {
+      push(space, k, Branch::Refracted, Side::Inside, weight * (1.0F - share), first_index + k, 1, next);
+    } else {
+      absorbed += double{weight * (1.0F - share)};
+    }
+  }
+  tally.add(Fate::Absorbed, absorbed);
+  tally.normal_fallbacks += std::exchange(space.met.normal_fallbacks, 0);
+  if (options_.estimator != Estimator::Slides) return;
+  next.slides_factor.resize(next.rays.size());
+  for (std::size_t k = 0; k < next.count; ++k) {
+    const std::size_t hit = static_cast<std::size_t>(next.number[k] - first_index);
+    next.slides_factor[k] = departure_cosine(space.hits, rays, hit);
+  }
+}
+
+void PathWalker::follow(First first, WalkSpace& space, BatchTally& tally) const {
+  for (std::uint32_t order = 1; space.paths[(order - 1) % 2].count > 0; ++order) {
+    const PathBatch& paths = space.paths[(order - 1) % 2];
+    PathBatch& next = space.paths[order % 2];
+    next.count = 0;
+    tracer_.closest_hits(paths.rays, paths.count, space.hits);
+    bool any_hit = false;
+    for (std::size_t k = 0; k < paths.count; ++k) {
+      const RayEnd end = space.hits.end[k];
+      if (end == RayEnd::Surface)
+        any_hit = true;
+      else if (first == First::Counts || order > 1 || !is_exit(end, paths.rays.side[k]))
+        end_path(paths, k, end, order, tally);
+    }
+    if (!any_hit) continue;
+    if (order < options_.max_bounces) interact(paths.rays, paths.count, space);
+    for (std::size_t k = 0; k < paths.count; ++k) {
+      if (space.hits.end[k] != RayEnd::Surface) continue;
+      // The splat took this light for gone; it is not.
+      if (first == First::InSplat && order == 1) {
+        const RayBatch& rays = paths.rays;
+        leave_unhindered(paths.branch[k] == 0 ? Branch::Reflected : Branch::Refracted,
+                         {rays.dx[k], rays.dy[k], rays.dz[k]}, -double{paths.weight[k]}, tally);
+      }
+      if (order >= options_.max_bounces)
+        tally.add(Fate::CutOff, double{paths.weight[k]});
+      else
+        meet_again(paths, k, order, space, next, tally);
+    }
+    tally.normal_fallbacks += std::exchange(space.met.normal_fallbacks, 0);
+  }
+}
+
+void PathWalker::meet_again(const PathBatch& paths, std::size_t k, std::uint32_t order, WalkSpace& space,
+                            PathBatch& next, BatchTally& tally) const {
+  ++tally.interactions;
+  const Side side = paths.rays.side[k];
+  const float share = space.met.reflectance[k];
+  float weight = paths.weight[k];
+  if (side == Side::Inside && absorption_per_cell_ > 0.0) {
+    const auto kept = static_cast<float>(attenuation(paths.rays, k, double{space.hits.z[k]}));
+    tally.add(Fate::Absorbed, double{weight} - double{weight * kept});
+    weight *= kept;
+  }
+  const std::size_t before = next.count;
+  if (space.met.refracts[k] == 0) {
+    tally.add(Fate::Absorbed, double{weight} - double{weight * share});
+    push(space, k, Branch::Reflected, side, weight * share, paths.number[k], paths.branch[k], next);
+  } else {
+    const double choice =
+        choices_.uniform4(paths.number[k], (std::uint32_t{paths.branch[k]} << 24) + order / 4)[order % 4];
+    const bool reflect = choice < double{share};
+    push(space, k, reflect ? Branch::Reflected : Branch::Refracted, reflect ? side : other(side), weight,
+         paths.number[k], paths.branch[k], next);
+  }
+  if (options_.estimator == Estimator::Slides) {
+    next.slides_factor.resize(next.rays.size());
+    next.slides_factor[before] = departure_cosine(space.hits, paths.rays, k);
+  }
+}
+
+void PathWalker::end_path(const PathBatch& paths, std::size_t k, RayEnd end, std::uint32_t order,
+                          BatchTally& tally) const {
+  const RayBatch& rays = paths.rays;
+  const double weight = double{paths.weight[k]};
+  const bool outside = rays.side[k] == Side::Outside;
+  if (end == RayEnd::Above && outside) {
+    const bool slides = options_.estimator == Estimator::Slides;
+    const double factor = slides ? double{paths.slides_factor[k]} / to_light_.z() : 1.0;
+    return tally.leave(Fate::Reflected, double{rays.dx[k]}, double{rays.dy[k]}, weight * factor, order);
+  }
+  if (end == RayEnd::Below && !outside) {
+    const double kept = absorption_per_cell_ > 0.0 ? attenuation(rays, k, tile_.lowest()) : 1.0;
+    tally.add(Fate::Absorbed, weight * (1.0 - kept));
+    return tally.leave(Fate::Transmitted, double{rays.dx[k]}, double{rays.dy[k]}, weight * kept, order);
+  }
+  leak(weight, tally);
+}
+
+// Beer–Lambert along a ray inside, up to a height.
+double PathWalker::attenuation(const RayBatch& rays, std::size_t k, double end_height) const {
+  constexpr double level = 1e-6;  // a ray this level inside of the relief ends within the same cell
+  const double fall = std::abs(end_height - double{rays.z[k]}), speed = std::max(level, std::abs(double{rays.dz[k]}));
+  return std::exp(-absorption_per_cell_ * fall / speed);
+}
+
+// Hits, as if light had come to a point of every stratum without being shadowed; and rays from there to the light.
+void PathWalker::place_on_surface(const SampleStrata& strata, std::uint64_t first, std::size_t count,
+                                  WalkSpace& space) const {
+  constexpr std::size_t slice = 256;
+  std::array<double, slice> u{}, v{};
+  HitBatch& hits = space.hits;
+  const double columns = tile_.columns(), rows = tile_.rows();
+  for (std::size_t begin = 0; begin < count; begin += slice) {
+    const std::size_t here = std::min(slice, count - begin);
+    strata.points(first + begin, std::span(u).first(here), std::span(v).first(here));
+    for (std::size_t k = 0; k < here; ++k) {
+      const std::size_t at = begin + k;
+      const double x = u[k] * columns, y = v[k] * rows;
+      const auto column = static_cast<std::uint32_t>(x), row = static_cast<std::uint32_t>(y);
+      const auto in_x = static_cast<float>(x - column), in_y = static_cast<float>(y - row);
+      const std::uint32_t right = column + 1 == tile_.columns() ? 0 : column + 1;
+      const std::uint32_t upper = row + 1 == tile_.rows() ? 0 : row + 1;
+      const float z00 = tile_.height(column, row), z11 = tile_.height(right, upper);
+      const bool lower_half = in_x > in_y;
+      const float corner = lower_half ? tile_.height(right, row) : tile_.height(column, upper);
+      const float a = lower_half ? corner - z00 : z11 - corner, b = lower_half ? z11 - corner : corner - z00;
+      hits.end[at] = RayEnd::Surface;
+      hits.cell_x[at] = static_cast<std::int32_t>(column);
+      hits.cell_y[at] = static_cast<std::int32_t>(row);
+      hits.x[at] = in_x;
+      hits.y[at] = in_y;
+      hits.z[at] = z00 + (a * in_x + b * in_y);
+      hits.slope_x[at] = a;
+      hits.slope_y[at] = b / static_cast<float>(tile_.cell_y());
+      hits.triangle[at] = lower_half ? 0 : 1;
+    }
+  }
+}
+
+void PathWalker::correct(const SampleStrata& strata, std::uint64_t first, std::uint64_t first_index, std::size_t count,
+                         WalkSpace& space, BatchTally& tally) const {
+  place_on_surface(strata, first, count, space);
+  shine(count, space);
+  interact_geometric(options_.material, space.aimed.rays, space.hits, count, space.met);
+  find_lit(count, space);
+  for (std::size_t k = 0; k < count; ++k) {
+    if (space.start_weight[k] == 0.0F || space.lit[k] != 0) continue;
+    splat_one(space, k, -space.start_weight[k], tally);
+    space.start_weight[k] = 0.0F;
+  }
+  double absorbed_in_splat = 0.0;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (space.met.refracts[k] == 0)
+      absorbed_in_splat += double{space.start_weight[k] * (1.0F - space.met.reflectance[k])};
+  }
+  split(space.aimed.rays, count, first_index, space, tally);
+  tally.add(Fate::Absorbed, -absorbed_in_splat);
+  follow(First::InSplat, space, tally);
+}
+
+// Rays from the points that face the light towards it.
+void PathWalker::find_lit(std::size_t count, WalkSpace& space) const {
+  PathBatch& next = space.paths[0];
+  next.count = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    space.lit[k] = 0;
+    if (space.start_weight[k] == 0.0F) continue;
+    push(space, k, Branch::Reflected, Side::Outside, 1.0F, k, 0, next);
+    const std::size_t at = next.count - 1;
+    next.rays.dx[at] = static_cast<float>(to_light_.x());
+    next.rays.dy[at] = static_cast<float>(to_light_.y());
+    next.rays.dz[at] = static_cast<float>(to_light_.z());
+  }
+  HitBatch& shadows = space.shadows;
+  tracer_.closest_hits(next.rays, next.count, shadows);
+  for (std::size_t k = 0; k < next.count; ++k) {
+    if (shadows.end[k] == RayEnd::Above) space.lit[next.number[k]] = 1;
+  }
+}
+
+// The light of one interaction as the splat sees it; with a negative weight, to take it back.
+void PathWalker::splat_one(const WalkSpace& space, std::size_t k, float weight, BatchTally& tally) const {
+  const InteractionBatch& met = space.met;
+  const float share = met.reflectance[k];
+  const Eigen::Vector3f reflected(met.reflected_x[k], met.reflected_y[k], met.reflected_z[k]);
+  if (share > 0.0F) leave_unhindered(Branch::Reflected, reflected, double{weight * share}, tally);
+  const double rest = double{weight * (1.0F - share)};
+  if (met.refracts[k] == 0) return tally.add(Fate::Absorbed, rest);
+  const Eigen::Vector3f refracted(met.refracted_x[k], met.refracted_y[k], met.refracted_z[k]);
+  leave_unhindered(Branch::Refracted, refracted, rest, tally);
+}
+
+void PathWalker::splat_row(std::uint32_t row, WalkSpace& space, BatchTally& tally) const {
+  const std::uint32_t upper = row + 1 == tile_.rows() ? 0 : row + 1;
+  const auto per_y = static_cast<float>(1.0 / tile_.cell_y());
+  for (std::uint32_t begin = 0; begin < tile_.columns(); begin += rays_together / 2) {
+    const std::uint32_t end = std::min<std::uint32_t>(tile_.columns(), begin + rays_together / 2);
+    std::size_t count = 0;
+    for (std::uint32_t column = begin; column < end; ++column) {
+      const std::uint32_t right = column + 1 == tile_.columns() ? 0 : column + 1;
+      const float z00 = tile_.height(column, row), z10 = tile_.height(right, row);
+      const float z01 = tile_.height(column, upper), z11 = tile_.height(right, upper);
+      space.hits.slope_x[count] = z10 - z00;
+      space.hits.slope_y[count++] = (z11 - z10) * per_y;
+      space.hits.slope_x[count] = z11 - z01;
+      space.hits.slope_y[count++] = (z01 - z00) * per_y;
+    }
+    shine(count, space);
+    interact_geometric(options_.material, space.aimed.rays, space.hits, count, space.met);
+    for (std::size_t k = 0; k < count; ++k) {
+      if (space.start_weight[k] > 0.0F) splat_one(space, k, space.start_weight[k], tally);
+    }
+  }
+}
+
+// The beam at the facets of `space.hits`, and the light that each catches for each light on its macro area.
+void PathWalker::shine(std::size_t count, WalkSpace& space) const {
+  RayBatch& rays = space.aimed.rays;
+  const HitBatch& hits = space.hits;
+  const auto lx = static_cast<float>(to_light_.x()), ly = static_cast<float>(to_light_.y());
+  const auto lz = static_cast<float>(to_light_.z());
+  for (std::size_t k = 0; k < count; ++k) {
+    rays.dx[k] = -lx;
+    rays.dy[k] = -ly;
+    rays.dz[k] = -lz;
+    rays.side[k] = Side::Outside;
+    space.start_weight[k] = std::max(0.0F, (lz - hits.slope_x[k] * lx - hits.slope_y[k] * ly) / lz);
+  }
 }
 
 }  // namespace mezzotint

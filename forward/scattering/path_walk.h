@@ -1,36 +1,84 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <vector>
 
 #include "forward/base/random.h"
 #include "forward/scattering/batch_tally.h"
+#include "forward/scattering/incident_light.h"
+#include "forward/scattering/interaction_batch.h"
 #include "forward/scattering/path_tracing.h"
-#include "forward/scattering/periodic_tile.h"
-#include "forward/scattering/relief_tracer.h"
+#include "forward/tracing/periodic_tile.h"
+#include "forward/tracing/relief_tracer.h"
 
 namespace mezzotint {
 
-/// Follows light from its first ray to where it ends. Knows nothing of how rays find triangles.
+/// Paths on their way: their rays and what they carry, all after the same number of interactions.
+struct PathBatch {
+  explicit PathBatch(std::size_t capacity) : rays(capacity), weight(capacity), number(capacity), branch(capacity) {}
+  RayBatch rays;
+  std::vector<float> weight;
+  std::vector<std::uint64_t> number;  ///< of the first ray, among all rays of the run: names its random numbers
+  std::vector<std::uint8_t> branch;   ///< 0 was reflected first, 1 refracted: they draw different random numbers
+  std::vector<float> slides_factor;   ///< (ω·m) at the last interaction; Estimator::Slides alone fills it
+  std::size_t count = 0;
+};
+
+/// So many first rays are followed together: their paths fit into a core's own cache.
+inline constexpr std::size_t rays_together = 4096;
+
+/// What one thread needs for a walk.
+struct WalkSpace {
+  AimedRays aimed{rays_together};
+  HitBatch hits{2 * rays_together};
+  HitBatch shadows{rays_together};
+  InteractionBatch met{2 * rays_together};
+  std::array<PathBatch, 2> paths = {PathBatch(2 * rays_together), PathBatch(2 * rays_together)};
+  std::vector<float> start_weight = std::vector<float>(rays_together);
+  std::vector<std::uint8_t> lit = std::vector<std::uint8_t>(rays_together);
+};
+
+/// Follows light from its first ray to where it ends, many paths at a time. Knows nothing of how rays find facets.
 class PathWalker {
 public:
   /// All that is given must outlive the walker.
   PathWalker(const PeriodicTile& tile, const ReliefTracer& tracer, const PathTracingOptions& options);
 
-  /// Adds the light of one first ray, of weight 1, to the tally.
-  void walk(const Ray& first, std::uint64_t ray_index, BatchTally& tally) const;
+  /// The light of strata first … first + count − 1, each of weight 1.
+  void walk(const IncidentLight& light, const SampleStrata& strata, std::uint64_t first, std::uint64_t first_index,
+            std::size_t count, WalkSpace& space, BatchTally& tally) const;
+
+  /// What the splat leaves out, from points of the surface: minus the light of those in shadow; for the others plus
+  /// the light of further interactions, minus what the splat took them for. Strata of the macro area.
+  void correct(const SampleStrata& strata, std::uint64_t first, std::uint64_t first_index, std::size_t count,
+               WalkSpace& space, BatchTally& tally) const;
+
+  /// Dense splat of one row of facets: each sends the light that its slope alone would catch straight out. All rows
+  /// together are exact for geometric normals: no noise at all.
+  void splat_row(std::uint32_t row, WalkSpace& space, BatchTally& tally) const;
 
 private:
-  struct Path;
-  void follow(Path path, BatchTally& tally) const;
-  void end_path(const Path& path, RayEnd end, BatchTally& tally) const;
-  void meet_again(Path& path, const SurfaceHit& hit, BatchTally& tally) const;
-  [[nodiscard]] bool met_a_copy(const Ray& first, const SurfaceHit& hit) const;
-  [[nodiscard]] double choice(const Path& path) const;
+  enum class First { Counts, InSplat };  ///< whether light that leaves after one interaction is to be added
+  void interact(const RayBatch& rays, std::size_t count, WalkSpace& space) const;
+  void split(const RayBatch& rays, std::size_t count, std::uint64_t first_index, WalkSpace& space,
+             BatchTally& tally) const;
+  void follow(First first, WalkSpace& space, BatchTally& tally) const;
+  void end_path(const PathBatch& paths, std::size_t k, RayEnd end, std::uint32_t order, BatchTally& tally) const;
+  void meet_again(const PathBatch& paths, std::size_t k, std::uint32_t order, WalkSpace& space, PathBatch& next,
+                  BatchTally& tally) const;
+  void place_on_surface(const SampleStrata& strata, std::uint64_t first, std::size_t count, WalkSpace& space) const;
+  void splat_one(const WalkSpace& space, std::size_t k, float weight, BatchTally& tally) const;
+  void shine(std::size_t count, WalkSpace& space) const;
+  void find_lit(std::size_t count, WalkSpace& space) const;
+  [[nodiscard]] double attenuation(const RayBatch& rays, std::size_t k, double end_height) const;
 
   const PeriodicTile& tile_;
   const ReliefTracer& tracer_;
   const PathTracingOptions& options_;
   RandomStream choices_;
+  Direction to_light_;
+  double absorption_per_cell_ = 0.0;
 };
 
 }  // namespace mezzotint

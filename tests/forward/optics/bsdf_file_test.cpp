@@ -216,5 +216,27 @@ TEST(BsdfFile, IsNotWrittenForMapsThatDoNotFitOrWhereThereIsNoFolder) {
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
+TEST(BsdfFile, KeepsTheOrdersOfInteraction) {
+  const test::TemporaryFolder folder;
+  Bsdf bsdf = example({9, 6});
+  for (int order = 0; order < 3; ++order) {
+    MapEstimate map;
+    map.mean = wavy(54, 20.0 + order);
+    map.standard_error = wavy(54, 30.0 + order);
+    bsdf.reflection_orders.push_back(map);
+  }
+  write_exr(bsdf, folder / "orders.exr");
+  const Bsdf again = read_exr(folder / "orders.exr");
+  ASSERT_EQ(again.reflection_orders.size(), 3U);
+  for (std::size_t order = 0; order < 3; ++order) {
+    for (std::size_t k = 0; k < 54; ++k) {
+      EXPECT_FLOAT_EQ(static_cast<float>(bsdf.reflection_orders[order].mean[k]),
+                      static_cast<float>(again.reflection_orders[order].mean[k]));
+      EXPECT_FLOAT_EQ(static_cast<float>(bsdf.reflection_orders[order].standard_error[k]),
+                      static_cast<float>(again.reflection_orders[order].standard_error[k]));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace mezzotint

@@ -33,7 +33,7 @@ TEST(Material, RefusesWhatItDoesNotUnderstandAndSaysWhatItWould) {
                            "dielectric:inf",
                            "dielectric:1.5x",
                            "dielectric: 1.5",
-                           "dielectric:1.5,0",
+                           "dielectric:1.5,-1",
                            "dielectric:-1.5",
                            "conductor:1.5",
                            "conductor:0,3",
@@ -50,6 +50,13 @@ TEST(Material, RefusesWhatItDoesNotUnderstandAndSaysWhatItWould) {
       EXPECT_NE(std::string(error.what()).find("conductor:ETA,KAPPA"), std::string::npos);
     }
   }
+}
+
+TEST(Material, MayAbsorbInside) {
+  const Material clear = parse_material("dielectric:1.5,0.002");
+  EXPECT_EQ(std::get<Dielectric>(clear).absorption_per_um, 0.002);
+  EXPECT_EQ(to_string(clear), "dielectric:1.5,0.002");
+  EXPECT_EQ(to_string(parse_material("dielectric:1.5,0")), "dielectric:1.5");
 }
 
 }  // namespace

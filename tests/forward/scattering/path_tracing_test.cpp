@@ -63,8 +63,8 @@ TEST(PathTracing, AccountsForAllLightThatMeetsGlass) {
         PathTracingOptions options = options_at(theta_deg, Dielectric{1.5});
         options.normals = normals;
         const Bsdf bsdf = trace_bsdf(test::random_relief(128, gradient), options);
-        EXPECT_NEAR(sum_of(bsdf.energy), 1.0, 1e-12);  // rounding: sums of 2^16 weights, slice by slice
-        EXPECT_LT(bsdf.energy.cut_off.value, 1e-5);    // through an edge by rounding; 64 interactions are plenty
+        EXPECT_NEAR(sum_of(bsdf.energy), 1.0, 1e-7);  // weights of paths are single: 6e-8
+        EXPECT_LT(bsdf.energy.cut_off.value, 1e-5);   // through an edge by rounding; 64 interactions are plenty
         EXPECT_GT(bsdf.energy.transmitted.value, 0.4);
         EXPECT_EQ(bsdf.energy.absorbed.value, 0.0);
       }
@@ -98,7 +98,8 @@ TEST(PathTracing, ReflectsFromGentleGlassWhatItsFacetsReflect) {
   const Bsdf bsdf = trace_bsdf(field, options);
   // Five standard errors (false alarm 1e-6), which strata keep below 1e-6.
   EXPECT_LT(bsdf.energy.reflected.standard_error, 1e-6);
-  EXPECT_NEAR(bsdf.energy.reflected.value, expected, 5.0 * bsdf.energy.reflected.standard_error + 1e-12);
+  EXPECT_NEAR(bsdf.energy.reflected.value, expected,
+              5.0 * bsdf.energy.reflected.standard_error + 1e-8);  // single Fresnel
   EXPECT_NEAR(bsdf.energy.transmitted.value, 1.0 - expected, 5e-6);
 }
 
@@ -115,8 +116,8 @@ TEST(PathTracing, BringsALittleLightBackOutOfSteepGlass) {
   // Four standard errors, false alarm 3e-5.
   EXPECT_GT(back, 4.0 * std::hypot(glass.energy.reflected.standard_error, opaque.energy.reflected.standard_error));
   EXPECT_LT(back, 1e-3);
-  EXPECT_NEAR(sum_of(glass.energy), 1.0, 1e-12);  // rounding: sums of 2^18 weights, slice by slice
-  EXPECT_NEAR(sum_of(opaque.energy), 1.0, 1e-12);
+  EXPECT_NEAR(sum_of(glass.energy), 1.0, 1e-7);  // weights of paths are single: 6e-8
+  EXPECT_NEAR(sum_of(opaque.energy), 1.0, 1e-7);
   EXPECT_LT(glass.energy.cut_off.value, 1e-5);  // 64 interactions are plenty, even here
 }
 
@@ -132,7 +133,7 @@ TEST(PathTracing, CountsLightThatMeetsAMirroredCopyFirst) {
   // Two edges, each within one of 64 strata along x, jittered in 32 batches: σ ≈ 1/64/√(12·32)·√2 = 1.1e-3,
   // less by the strata along y. Two of them.
   EXPECT_NEAR(bsdf.energy.left_sideways.value, t * std::tan(theta_deg * std::numbers::pi / 180.0), 2e-3);
-  EXPECT_NEAR(sum_of(bsdf.energy), 1.0, 1e-12);  // rounding
+  EXPECT_NEAR(sum_of(bsdf.energy), 1.0, 1e-7);  // single weights
   // From the other side all light that is aimed at the rising slope meets it.
   options.incidence.phi = Angle::from_degrees(0.0);
   EXPECT_EQ(trace_bsdf(roof, options).energy.left_sideways.value, 0.0);
@@ -222,7 +223,7 @@ TEST(PathTracing, SaysHowItWasMade) {
   options.batches = 32;
   const Bsdf bsdf = trace_bsdf(test::random_relief(32, 0.1), options);
   EXPECT_EQ(bsdf.provenance.at("samples"), "65536");
-  EXPECT_EQ(bsdf.provenance.at("tracer"), "embree");
+  EXPECT_EQ(bsdf.provenance.at("tracer"), "height field");
   EXPECT_EQ(bsdf.provenance.at("material"), "dielectric:1.5");
   EXPECT_EQ(bsdf.grid, options.grid);
 }

@@ -1,4 +1,4 @@
-#include "forward/scattering/relief_scene.h"
+#include "forward/tracing/relief_scene.h"
 
 #include <embree3/rtcore.h>
 
@@ -11,6 +11,22 @@
 namespace mezzotint {
 
 namespace {
+
+constexpr std::uint32_t no_triangle = std::numeric_limits<std::uint32_t>::max();
+
+// One ray in the frame and units of PeriodicTile.
+struct Ray {
+  Eigen::Vector3d origin;
+  Direction direction;
+  Side side = Side::Outside;
+  std::uint32_t left_triangle = no_triangle;  // the one that it has just left; a plane is not met twice
+};
+
+struct SurfaceHit {
+  std::uint32_t triangle = no_triangle;
+  double u = 0.0;  // weights of the triangle's second and third corner
+  double v = 0.0;
+};
 
 // A ray starts this far (in cells, or four times the rounding of its origin to single precision) behind its
 // origin, since the next facet may begin right there. What lies behind is not met by mistake: the facet
@@ -213,7 +229,6 @@ struct ReliefScene::Walk {
   Eigen::Vector3d origin;
   Direction direction;
   FilterContext context{};
-  double travelled = 0.0;
 
   Walk(const PeriodicTile& walked_tile, const Handles& scene_handles, const Ray& ray)
       : tile(walked_tile), handles(scene_handles), origin(ray.origin), direction(ray.direction) {
@@ -250,30 +265,65 @@ struct ReliefScene::Walk {
     hit.triangle = handles.tile_triangle(query.hit.primID, tile);
     hit.u = std::clamp(double{query.hit.u}, 0.0, 1.0);
     hit.v = std::clamp(double{query.hit.v}, 0.0, 1.0 - hit.u);
-    hit.position = tile.point(hit.triangle, hit.u, hit.v);
-    hit.distance = travelled + query.ray.tfar - handles.start_behind;
     return true;
   }
 
   void advance(double length) {
     origin += length * direction;
-    travelled += length;
     context.excluded = no_triangle;
   }
 };
 
-RayEnd ReliefScene::closest_hit(const Ray& ray, SurfaceHit& hit) const {
-  const RayEnd out = ray.direction.z() > 0.0 ? RayEnd::Above : RayEnd::Below;
-  Walk walk(tile_, *handles_, ray);
-  for (int tiles = 0; tiles < most_tiles; ++tiles) {
-    walk.wrap();
-    const Stretch stretch = walk.next_stretch();
-    if (stretch.length <= 0.0) return out;
-    if (walk.meets_triangle(stretch.length, hit)) return RayEnd::Surface;
-    if (stretch.leaves) return out;
-    walk.advance(stretch.length);
+namespace {
+
+Ray ray_of(const PeriodicTile& tile, const RayBatch& rays, std::size_t k) {
+  const double x = rays.cell_x[k] + double{rays.x[k]} - 0.5 * tile.length_x();
+  const double y = (rays.cell_y[k] + double{rays.y[k]}) * tile.cell_y() - 0.5 * tile.length_y();
+  const auto cell =
+      static_cast<std::uint32_t>(rays.cell_y[k]) * tile.columns() + static_cast<std::uint32_t>(rays.cell_x[k]);
+  const std::uint32_t left = rays.left[k] == no_half ? no_triangle : 2 * cell + rays.left[k];
+  return {{x, y, double{rays.z[k]}}, {rays.dx[k], rays.dy[k], rays.dz[k]}, rays.side[k], left};
+}
+
+void store(const PeriodicTile& tile, const SurfaceHit& hit, std::size_t k, HitBatch& hits) {
+  const std::uint32_t cell = hit.triangle / 2, row = cell / tile.columns(), column = cell - row * tile.columns();
+  const bool lower = hit.triangle % 2 == 0;
+  const Direction normal = tile.geometric_normal(hit.triangle);
+  hits.cell_x[k] = static_cast<std::int32_t>(column);
+  hits.cell_y[k] = static_cast<std::int32_t>(row);
+  hits.triangle[k] = lower ? 0 : 1;
+  // Corners (0, 0), (1, 0), (1, 1) below the diagonal; (0, 0), (1, 1), (0, 1) above.
+  hits.x[k] = static_cast<float>(lower ? hit.u + hit.v : hit.u);
+  hits.y[k] = static_cast<float>(lower ? hit.v : hit.u + hit.v);
+  hits.z[k] = static_cast<float>(tile.point(hit.triangle, hit.u, hit.v).z());
+  hits.slope_x[k] = static_cast<float>(-normal.x() / normal.z());
+  hits.slope_y[k] = static_cast<float>(-normal.y() / normal.z());
+}
+
+}  // namespace
+
+void ReliefScene::closest_hits(const RayBatch& rays, std::size_t count, HitBatch& hits) const {
+  for (std::size_t k = 0; k < count; ++k) {
+    const Ray ray = ray_of(tile_, rays, k);
+    const RayEnd out = ray.direction.z() > 0.0 ? RayEnd::Above : RayEnd::Below;
+    Walk walk(tile_, *handles_, ray);
+    hits.end[k] = RayEnd::Lost;
+    for (int tiles = 0; tiles < most_tiles && hits.end[k] == RayEnd::Lost; ++tiles) {
+      walk.wrap();
+      const Stretch stretch = walk.next_stretch();
+      SurfaceHit hit;
+      if (stretch.length <= 0.0) {
+        hits.end[k] = out;
+      } else if (walk.meets_triangle(stretch.length, hit)) {
+        hits.end[k] = RayEnd::Surface;
+        store(tile_, hit, k, hits);
+      } else if (stretch.leaves) {
+        hits.end[k] = out;
+      } else {
+        walk.advance(stretch.length);
+      }
+    }
   }
-  return RayEnd::Lost;
 }
 
 }  // namespace mezzotint

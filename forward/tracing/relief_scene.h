@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "forward/scattering/periodic_tile.h"
-#include "forward/scattering/relief_tracer.h"
+#include "forward/tracing/periodic_tile.h"
+#include "forward/tracing/relief_tracer.h"
 
 namespace mezzotint {
 
@@ -20,7 +20,7 @@ public:
   ReliefScene(const ReliefScene&) = delete;
   ReliefScene& operator=(const ReliefScene&) = delete;
 
-  [[nodiscard]] RayEnd closest_hit(const Ray& ray, SurfaceHit& hit) const override;
+  void closest_hits(const RayBatch& rays, std::size_t count, HitBatch& hits) const override;
 
 private:
   struct Handles;

@@ -30,6 +30,8 @@ public:
   [[nodiscard]] double length_y() const { return rows_ * cell_y_; }
   [[nodiscard]] double highest() const { return highest_; }
   [[nodiscard]] double lowest() const { return -highest_; }
+  /// What a cell is worth: pitch_x.
+  [[nodiscard]] double unit_um() const { return unit_um_; }
   /// Mean height: the macrosurface, at which rays are aimed.
   [[nodiscard]] double mean() const { return mean_; }
 
@@ -63,6 +65,7 @@ private:
 
   std::uint32_t columns_ = 0;
   std::uint32_t rows_ = 0;
+  double unit_um_ = 1.0;
   double cell_y_ = 1.0;
   double highest_ = 0.0;
   double mean_ = 0.0;

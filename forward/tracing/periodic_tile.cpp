@@ -1,4 +1,4 @@
-#include "forward/scattering/periodic_tile.h"
+#include "forward/tracing/periodic_tile.h"
 
 #include <Eigen/Geometry>
 #include <limits>
@@ -40,7 +40,7 @@ PeriodicTile::PeriodicTile(const HeightField& field) : mirrored_(!field.periodic
   require_traceable(field);
   columns_ = period(field.columns(), mirrored_);
   rows_ = period(field.rows(), mirrored_);
-  const double unit_um = field.grid().pitch_x.um();
+  const double unit_um = unit_um_ = field.grid().pitch_x.um();
   cell_y_ = field.grid().pitch_y.um() / unit_um;
   const HeightRange range = height_range(field);
   const double middle_um = 0.5 * (range.lowest.um() + range.highest.um());

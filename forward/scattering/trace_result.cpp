@@ -1,0 +1,191 @@
+#include "forward/scattering/trace_result.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "forward/base/error.h"
+
+namespace mezzotint {
+
+namespace {
+
+double sum_of(const EnergyTally& energy) {
+  double sum = 0.0;
+  for (const double share : energy) sum += share;
+  return sum;
+}
+
+// Tallies of weight to 1/sr: by the light that met the measured part, and the projected solid angle of the bin.
+std::vector<double> map_scale(const DirectionGrid& grid, double light_that_met) {
+  std::vector<double> scale = projected_solid_angles(grid);
+  for (double& area : scale) area = area > 0.0 ? 1.0 / (light_that_met * area) : 0.0;
+  return scale;
+}
+
+/// Batches as shares of the light that came in: what was traced, and the splat that it corrects.
+class Shares {
+public:
+  Shares(const TraceState& state, const BatchTally* splat, double facets)
+      : state_(state),
+        splat_(splat),
+        per_ray_(1.0 / static_cast<double>(state.rays_per_batch)),
+        per_facet_(1.0 / facets) {
+    if (splat_ != nullptr) splat_total_ = sum_of(splat_->total_energy) * per_facet_;
+  }
+
+  // With a splat the shares of a batch sum to 1 but for noise; the excess, spread like the splat's own light, is
+  // taken out again. (A control variate with the coefficient 1: the expectation of the excess is 0.)
+  [[nodiscard]] double excess(const BatchTally& tally) const {
+    return splat_ == nullptr ? 0.0 : splat_total_ + sum_of(tally.total_energy) * per_ray_ - 1.0;
+  }
+
+  template <class Part>  // BatchTally → container of numbers
+  void add_to(BatchStatistics& statistics, const Part& part) const {
+    std::vector<double> values;
+    for (const BatchTally& tally : state_.tallies) {
+      const auto& traced = part(tally);
+      values.resize(traced.size());
+      const double kept = 1.0 - (splat_ == nullptr ? 0.0 : excess(tally) / splat_total_);
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        const double dense = splat_ == nullptr ? 0.0 : part(*splat_)[k] * per_facet_;
+        values[k] = traced[k] * per_ray_ + dense * kept;
+      }
+      statistics.add(values);
+    }
+  }
+
+  // What one path more would add to a bin of a map (0 reflection, 1 transmission), by the mean weight of all.
+  [[nodiscard]] double one_arrival(std::size_t map, double bins) const {
+    double weight = splat_ == nullptr ? 0.0 : splat_->arrived_weight[map];
+    double all = splat_ == nullptr ? 0.0 : splat_->arrivals[map], traced = 0.0;
+    for (const BatchTally& tally : state_.tallies) {
+      weight += tally.arrived_weight[map];
+      traced += tally.arrivals[map];
+    }
+    all += traced;
+    const double rays = static_cast<double>(state_.tallies.size()) / per_ray_;
+    return all > 0.0 ? weight / all / rays * std::sqrt(std::min(1.0, (traced + 1.0) / bins)) : 0.0;
+  }
+
+private:
+  const TraceState& state_;
+  const BatchTally* splat_;
+  double per_ray_, per_facet_;
+  double splat_total_ = 1.0;
+};
+
+template <class Part>
+MapEstimate estimate(const Shares& shares, std::size_t size, const std::vector<double>& scale, const Part& part) {
+  BatchStatistics statistics(size);
+  shares.add_to(statistics, part);
+  return statistics.estimate(scale);
+}
+
+// A map. The spread of a bin that few paths reach says little, and of one that none reached nothing: each is given one
+// path more (as Agresti and Coull do for a proportion), or its share where there are fewer paths than bins. In a bin of
+// ten paths that adds 5 % to the error, in a full one nothing.
+template <class Part>
+MapEstimate estimate_map(const Shares& shares, std::size_t map, const std::vector<double>& scale, const Part& part) {
+  MapEstimate result = estimate(shares, scale.size(), scale, part);
+  const double one = shares.one_arrival(map, static_cast<double>(scale.size()));
+  for (std::size_t k = 0; k < scale.size(); ++k) {
+    result.standard_error[k] = std::hypot(result.standard_error[k], one * scale[k]);
+  }
+  return result;
+}
+
+EnergyAudit audit(const MapEstimate& shares) {
+  const auto share = [&](Fate fate) {
+    const auto k = static_cast<std::size_t>(fate);
+    return Estimate{shares.mean[k], shares.standard_error[k]};
+  };
+  return {share(Fate::Reflected), share(Fate::Transmitted), share(Fate::Absorbed), share(Fate::LeftSideways),
+          share(Fate::CutOff)};
+}
+
+const char* name_of(Placement placement) {
+  switch (placement) {
+    case Placement::Strata:
+      return "strata";
+    case Placement::Lattice:
+      return "lattice";
+    case Placement::Random:
+      return "random";
+  }
+  return "";
+}
+
+std::string convergence_text(const TraceState& state) {
+  std::string text;
+  for (const auto& mark : state.convergence)
+    text += fmt::format("{}{}:{:.4g}", text.empty() ? "" : " ", mark.paths, mark.error);
+  return text;
+}
+
+Provenance provenance(const PathTracingOptions& options, const TraceState& state, const Shares& shares, bool splat) {
+  std::uint64_t interactions = 0, fallbacks = 0;
+  double leaked = 0.0, excess = 0.0;
+  for (const BatchTally& tally : state.tallies) {
+    interactions += tally.interactions;
+    fallbacks += tally.normal_fallbacks;
+    leaked += tally.leaked;
+    excess += shares.excess(tally) / static_cast<double>(state.tallies.size());
+  }
+  const std::uint64_t samples = state.rays_per_batch * options.batches;
+  const auto per_path = 1.0 / static_cast<double>(samples);
+  const double fallback_share =
+      static_cast<double>(fallbacks) / static_cast<double>(std::max<std::uint64_t>(1, interactions));
+  Provenance entries = {{"model", options.max_bounces == 1 ? "single" : "paths"},
+                        {"tracer", options.tracer == TracerKind::Embree ? "embree" : "height field"},
+                        {"estimator", options.estimator == Estimator::Flux ? "flux" : "slides"},
+                        {"placement", name_of(options.placement)},
+                        {"control_variate", splat ? "dense slope splat" : "none"},
+                        {"material", to_string(options.material)},
+                        {"normals", options.normals == NormalKind::Geometric ? "geometric" : "interpolated"},
+                        {"samples", std::to_string(samples)},
+                        {"batches", std::to_string(options.batches)},
+                        {"seed", std::to_string(options.seed)},
+                        {"max_bounces", std::to_string(options.max_bounces)},
+                        {"incidence_spread", options.spread_incidence_over_bin ? "bin" : "none"},
+                        {"convergence", convergence_text(state)},
+                        {"interactions_per_path", fmt::format("{:.6g}", static_cast<double>(interactions) * per_path)},
+                        {"normal_fallback_share", fmt::format("{:.6g}", fallback_share)},
+                        {"leaked_share", fmt::format("{:.6g}", leaked * per_path)}};
+  if (splat) entries["unadjusted_energy"] = fmt::format("{:.8g}", 1.0 + excess);
+  return entries;
+}
+
+}  // namespace
+
+TraceResult summarise(const PathTracingOptions& options, const TraceState& state, const BatchTally* splat,
+                      double facets) {
+  const Shares shares(state, splat, facets);
+  TraceResult result;
+  Bsdf& bsdf = result.bsdf;
+  bsdf.incidence = options.incidence;
+  bsdf.grid = options.grid;
+  const auto energy = [](const BatchTally& tally) -> const EnergyTally& { return tally.total_energy; };
+  bsdf.energy = audit(estimate(shares, fate_count, std::vector<double>(fate_count, 1.0), energy));
+  const double met = 1.0 - bsdf.energy.left_sideways.value;
+  if (!(met > 0.0)) {
+    throw MethodError("all light met mirrored copies before the measured patch; it is too small for this incidence");
+  }
+  const std::vector<double> scale = map_scale(options.grid, met);
+  bsdf.reflection =
+      estimate_map(shares, 0, scale, [](const BatchTally& t) -> const DirectionMap& { return t.reflected; });
+  bsdf.transmission =
+      estimate_map(shares, 1, scale, [](const BatchTally& t) -> const DirectionMap& { return t.transmitted; });
+  for (std::uint32_t order = 0; order < options.bounce_orders; ++order) {
+    bsdf.reflection_orders.push_back(estimate_map(
+        shares, 0, scale, [order](const BatchTally& t) -> const DirectionMap& { return t.orders[order]; }));
+  }
+  bsdf.provenance = provenance(options, state, shares, splat != nullptr);
+  return result;
+}
+
+}  // namespace mezzotint

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "forward/optics/bsdf.h"
+#include "forward/scattering/path_tracing.h"
+#include "forward/scattering/trace_state.h"
+
+namespace mezzotint {
+
+struct TraceResult {
+  Bsdf bsdf;
+};
+
+/// What the tallies of all batches amount to.
+/// @param splat   the dense splat of `facets` facets that the paths only correct; nullptr where they are everything.
+/// @throws MethodError where all light met mirrored copies.
+[[nodiscard]] TraceResult summarise(const PathTracingOptions& options, const TraceState& state, const BatchTally* splat,
+                                    double facets);
+
+}  // namespace mezzotint
