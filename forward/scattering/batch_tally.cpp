@@ -5,22 +5,6 @@
 
 namespace mezzotint {
 
-void BatchTally::leave(Fate fate, double x, double y, double weight, std::uint32_t order) {
-  // A ray along the horizon may be a rounding error longer than 1; it belongs to the rim.
-  constexpr double largest = 1.0 - 1e-12;
-  const double square = x * x + y * y;
-  const double inward = square > largest ? std::sqrt(largest / square) : 1.0;
-  const std::size_t bin = grid.bin_of(x * inward, y * inward);
-  (fate == Fate::Reflected ? reflected : transmitted)[bin] += weight;
-  if (fate == Fate::Reflected && !orders.empty()) {
-    orders[std::min<std::size_t>(order, orders.size()) - 1][bin] += weight;
-  }
-  const std::size_t map = fate == Fate::Reflected ? 0 : 1;
-  arrivals[map] += 1.0;
-  arrived_weight[map] += std::abs(weight);
-  add(fate, weight);
-}
-
 void BatchTally::close_slice() {
   for (std::size_t k = 0; k < fate_count; ++k) total_energy[k] += energy[k];
   energy = {};

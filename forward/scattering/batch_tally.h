@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,8 +24,15 @@ struct BatchTally {
       : grid(direction_grid), reflected(direction_grid.size()), transmitted(direction_grid.size()) {}
 
   void add(Fate fate, double weight) { energy[static_cast<std::size_t>(fate)] += weight; }
-  /// Light that leaves for good along a direction (x, y, ·) after `order` interactions: Reflected or Transmitted.
-  void leave(Fate fate, double x, double y, double weight, std::uint32_t order);
+  /// Light that leaves for good into a bin after `order` interactions: Reflected or Transmitted.
+  void leave(Fate fate, std::size_t bin, double weight, std::uint32_t order) {
+    const std::size_t map = fate == Fate::Reflected ? 0 : 1;
+    (map == 0 ? reflected : transmitted)[bin] += weight;
+    if (map == 0 && !orders.empty()) orders[std::min<std::size_t>(order, orders.size()) - 1][bin] += weight;
+    arrivals[map] += 1.0;
+    arrived_weight[map] += std::abs(weight);
+    add(fate, weight);
+  }
   /// Keeps the reflection apart by order of interaction: maps for 1, 2, …, and the last for that order and above.
   void keep_orders(std::uint32_t maps) { orders.assign(maps, DirectionMap(reflected.size())); }
   /// Moves the energies since the last call to the total: sums of sums stay exact to 1e-15 over 2^36 paths.

@@ -46,8 +46,22 @@ HWY_INLINE Vf conductor(Vf cosine, Vf eta, Vf kappa) {
   return hn::Mul(half, hn::Add(s, p));
 }
 
-void shade(const Material& material, const RayBatch& rays, const HitBatch& hits, std::size_t count,
-           InteractionBatch& result) {
+// The bin of a direction. One along the horizon may be a rounding error longer than 1; it belongs to the rim.
+HWY_INLINE hn::Vec<Ints> bin_of(const DirectionGrid& grid, Vf x, Vf y) {
+  const Ints di;
+  const Vf one = hn::Set(df, 1.0F), largest = hn::Set(df, 1.0F - 4e-7F);
+  const Vf square = hn::Add(hn::Mul(x, x), hn::Mul(y, y));
+  const Vf inward = hn::IfThenElse(hn::Gt(square, largest), hn::Sqrt(hn::Div(largest, square)), one);
+  const auto along = [&](Vf place, std::size_t bins) {
+    const Vf scaled = hn::Mul(hn::Add(hn::Mul(place, inward), one), hn::Set(df, 0.5F * static_cast<float>(bins)));
+    return hn::Min(hn::ConvertTo(di, scaled), hn::Set(di, static_cast<std::int32_t>(bins) - 1));
+  };
+  return hn::Add(hn::Mul(along(y, grid.height), hn::Set(di, static_cast<std::int32_t>(grid.width))),
+                 along(x, grid.width));
+}
+
+void shade(const Material& material, const DirectionGrid& grid, const RayBatch& rays, const HitBatch& hits,
+           std::size_t count, InteractionBatch& result) {
   const hn::Rebind<std::uint8_t, Floats> db;
   const Ints di;
   const Vf one = hn::Set(df, 1.0F), zero = hn::Zero(df);
@@ -68,8 +82,11 @@ void shade(const Material& material, const RayBatch& rays, const HitBatch& hits,
     const Vf facing = hn::Neg(hn::Add(hn::Mul(dx, nx), hn::Add(hn::Mul(dy, ny), hn::Mul(dz, nz))));
     const Vf cosine = hn::Min(one, hn::Max(zero, facing));
     const Vf twice = hn::Add(cosine, cosine);
-    hn::StoreU(hn::Add(dx, hn::Mul(twice, nx)), df, result.reflected_x.data() + k);
-    hn::StoreU(hn::Add(dy, hn::Mul(twice, ny)), df, result.reflected_y.data() + k);
+    const Vf reflected_x = hn::Add(dx, hn::Mul(twice, nx)), reflected_y = hn::Add(dy, hn::Mul(twice, ny));
+    hn::StoreU(reflected_x, df, result.reflected_x.data() + k);
+    hn::StoreU(reflected_y, df, result.reflected_y.data() + k);
+    hn::StoreU(bin_of(grid, reflected_x, reflected_y), di,
+               reinterpret_cast<std::int32_t*>(result.reflected_bin.data()) + k);
     hn::StoreU(hn::Add(dz, hn::Mul(twice, nz)), df, result.reflected_z.data() + k);
     if (clear != nullptr) {
       const Vf index = hn::IfThenElse(inside, hn::Set(df, 1.0F / eta), hn::Set(df, eta));
@@ -78,8 +95,12 @@ void shade(const Material& material, const RayBatch& rays, const HitBatch& hits,
       const Vf share = dielectric(cosine, index, cos_refracted);
       const Vf along = hn::Sub(hn::Mul(cosine, per_index), cos_refracted);
       hn::StoreU(share, df, result.reflectance.data() + k);
-      hn::StoreU(hn::Add(hn::Mul(dx, per_index), hn::Mul(along, nx)), df, result.refracted_x.data() + k);
-      hn::StoreU(hn::Add(hn::Mul(dy, per_index), hn::Mul(along, ny)), df, result.refracted_y.data() + k);
+      const Vf refracted_x = hn::Add(hn::Mul(dx, per_index), hn::Mul(along, nx));
+      const Vf refracted_y = hn::Add(hn::Mul(dy, per_index), hn::Mul(along, ny));
+      hn::StoreU(refracted_x, df, result.refracted_x.data() + k);
+      hn::StoreU(refracted_y, df, result.refracted_y.data() + k);
+      hn::StoreU(bin_of(grid, refracted_x, refracted_y), di,
+                 reinterpret_cast<std::int32_t*>(result.refracted_bin.data()) + k);
       hn::StoreU(hn::Add(hn::Mul(dz, per_index), hn::Mul(along, nz)), df, result.refracted_z.data() + k);
       const hn::Vec<Ints> goes_on = hn::IfThenElseZero(hn::RebindMask(di, hn::Lt(share, one)), hn::Set(di, 1));
       hn::StoreU(hn::DemoteTo(db, goes_on), db, result.refracts.data() + k);
@@ -102,9 +123,9 @@ namespace mezzotint {
 
 HWY_EXPORT(shade);
 
-void interact_geometric(const Material& material, const RayBatch& rays, const HitBatch& hits, std::size_t count,
-                        InteractionBatch& result) {
-  HWY_DYNAMIC_DISPATCH(shade)(material, rays, hits, count, result);
+void interact_geometric(const Material& material, const DirectionGrid& grid, const RayBatch& rays, const HitBatch& hits,
+                        std::size_t count, InteractionBatch& result) {
+  HWY_DYNAMIC_DISPATCH(shade)(material, grid, rays, hits, count, result);
 }
 
 }  // namespace mezzotint

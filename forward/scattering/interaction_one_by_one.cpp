@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <variant>
 
 #include "forward/scattering/interaction_batch.h"
@@ -43,13 +44,23 @@ std::pair<double, double> weights(std::uint8_t triangle, double x, double y) {
   return triangle == 0 ? std::pair{x - y, y} : std::pair{x, y - x};
 }
 
-void store(const SurfaceInteraction& one, std::size_t k, InteractionBatch& result) {
+// A direction along the horizon may be a rounding error longer than 1; it belongs to the rim.
+std::uint32_t bin_of(const DirectionGrid& grid, const Direction& way) {
+  constexpr double largest = 1.0 - 4e-7;
+  const double square = way.x() * way.x() + way.y() * way.y();
+  const double inward = square > largest ? std::sqrt(largest / square) : 1.0;
+  return static_cast<std::uint32_t>(grid.bin_of(way.x() * inward, way.y() * inward));
+}
+
+void store(const SurfaceInteraction& one, const DirectionGrid& grid, std::size_t k, InteractionBatch& result) {
   result.reflectance[k] = static_cast<float>(one.reflectance);
   result.refracts[k] = one.refracts ? 1 : 0;
   result.reflected_x[k] = static_cast<float>(one.reflected.x());
   result.reflected_y[k] = static_cast<float>(one.reflected.y());
   result.reflected_z[k] = static_cast<float>(one.reflected.z());
+  result.reflected_bin[k] = bin_of(grid, one.reflected);
   if (!one.refracts) return;
+  result.refracted_bin[k] = bin_of(grid, one.refracted);
   result.refracted_x[k] = static_cast<float>(one.refracted.x());
   result.refracted_y[k] = static_cast<float>(one.refracted.y());
   result.refracted_z[k] = static_cast<float>(one.refracted.z());
@@ -57,15 +68,16 @@ void store(const SurfaceInteraction& one, std::size_t k, InteractionBatch& resul
 
 }  // namespace
 
-void interact_one_by_one(const PeriodicTile& tile, const Material& material, NormalKind normals, const RayBatch& rays,
-                         const HitBatch& hits, std::size_t count, InteractionBatch& result) {
+void interact_one_by_one(const PeriodicTile& tile, const Material& material, const DirectionGrid& grid,
+                         NormalKind normals, const RayBatch& rays, const HitBatch& hits, std::size_t count,
+                         InteractionBatch& result) {
   for (std::size_t k = 0; k < count; ++k) {
     if (hits.end[k] != RayEnd::Surface) continue;
     const Direction way = Direction(rays.dx[k], rays.dy[k], rays.dz[k]).normalized();
     const double sign = rays.side[k] == Side::Outside ? 1.0 : -1.0;
     const Direction facet = sign * Direction(-hits.slope_x[k], -hits.slope_y[k], 1.0).normalized();
     if (normals == NormalKind::Geometric) {
-      store(scatter(material, way, rays.side[k], facet), k, result);
+      store(scatter(material, way, rays.side[k], facet), grid, k, result);
       continue;
     }
     const auto cell =
@@ -75,7 +87,7 @@ void interact_one_by_one(const PeriodicTile& tile, const Material& material, Nor
     const SurfaceInteraction about_smooth = scatter(material, way, rays.side[k], smooth);
     const bool good = usable(about_smooth, way, smooth, facet);
     if (!good) ++result.normal_fallbacks;
-    store(good ? about_smooth : scatter(material, way, rays.side[k], facet), k, result);
+    store(good ? about_smooth : scatter(material, way, rays.side[k], facet), grid, k, result);
   }
 }
 

@@ -20,10 +20,10 @@ enum class Branch { Reflected, Refracted };
 bool is_exit(RayEnd end, Side side) { return end == (side == Side::Outside ? RayEnd::Above : RayEnd::Below); }
 
 // Light from a facet into the open, whatever stands in its way: the splat.
-void leave_unhindered(Branch branch, const Eigen::Vector3f& way, double weight, BatchTally& tally) {
+void leave_unhindered(Branch branch, float way_z, std::uint32_t bin, double weight, BatchTally& tally) {
   const bool up = branch == Branch::Reflected;
-  if (up ? way.z() <= 0.0F : way.z() >= 0.0F) return;
-  tally.leave(up ? Fate::Reflected : Fate::Transmitted, double{way.x()}, double{way.y()}, weight, 1);
+  if (up ? way_z <= 0.0F : way_z >= 0.0F) return;
+  tally.leave(up ? Fate::Reflected : Fate::Transmitted, bin, weight, 1);
 }
 
 // The path that goes on from hit k.
@@ -45,6 +45,7 @@ void push(const WalkSpace& space, std::size_t k, Branch branch, Side side, float
   rays.side[at] = side;
   rays.left[at] = hits.triangle[k];
   next.weight[at] = weight;
+  next.bin[at] = reflected ? met.reflected_bin[k] : met.refracted_bin[k];
   next.number[at] = number;
   next.branch[at] = first_branch;
 }
@@ -70,9 +71,9 @@ PathWalker::PathWalker(const PeriodicTile& tile, const ReliefTracer& tracer, con
 
 void PathWalker::interact(const RayBatch& rays, std::size_t count, WalkSpace& space) const {
   if (options_.normals == NormalKind::Geometric) {
-    interact_geometric(options_.material, rays, space.hits, count, space.met);
+    interact_geometric(options_.material, options_.grid, rays, space.hits, count, space.met);
   } else {
-    interact_one_by_one(tile_, options_.material, options_.normals, rays, space.hits, count, space.met);
+    interact_one_by_one(tile_, options_.material, options_.grid, options_.normals, rays, space.hits, count, space.met);
   }
 }
 
@@ -144,9 +145,8 @@ void PathWalker::follow(First first, WalkSpace& space, BatchTally& tally) const 
       if (space.hits.end[k] != RayEnd::Surface) continue;
       // The splat took this light for gone; it is not.
       if (first == First::InSplat && order == 1) {
-        const RayBatch& rays = paths.rays;
-        leave_unhindered(paths.branch[k] == 0 ? Branch::Reflected : Branch::Refracted,
-                         {rays.dx[k], rays.dy[k], rays.dz[k]}, -double{paths.weight[k]}, tally);
+        leave_unhindered(paths.branch[k] == 0 ? Branch::Reflected : Branch::Refracted, paths.rays.dz[k], paths.bin[k],
+                         -double{paths.weight[k]}, tally);
       }
       if (order >= options_.max_bounces)
         tally.add(Fate::CutOff, double{paths.weight[k]});
@@ -193,12 +193,12 @@ void PathWalker::end_path(const PathBatch& paths, std::size_t k, RayEnd end, std
   if (end == RayEnd::Above && outside) {
     const bool slides = options_.estimator == Estimator::Slides;
     const double factor = slides ? double{paths.slides_factor[k]} / to_light_.z() : 1.0;
-    return tally.leave(Fate::Reflected, double{rays.dx[k]}, double{rays.dy[k]}, weight * factor, order);
+    return tally.leave(Fate::Reflected, paths.bin[k], weight * factor, order);
   }
   if (end == RayEnd::Below && !outside) {
     const double kept = absorption_per_cell_ > 0.0 ? attenuation(rays, k, tile_.lowest()) : 1.0;
     tally.add(Fate::Absorbed, weight * (1.0 - kept));
-    return tally.leave(Fate::Transmitted, double{rays.dx[k]}, double{rays.dy[k]}, weight * kept, order);
+    return tally.leave(Fate::Transmitted, paths.bin[k], weight * kept, order);
   }
   leak(weight, tally);
 }
@@ -248,7 +248,7 @@ void PathWalker::correct(const SampleStrata& strata, std::uint64_t first, std::u
                          WalkSpace& space, BatchTally& tally) const {
   place_on_surface(strata, first, count, space);
   shine(count, space);
-  interact_geometric(options_.material, space.aimed.rays, space.hits, count, space.met);
+  interact_geometric(options_.material, options_.grid, space.aimed.rays, space.hits, count, space.met);
   find_lit(count, space);
   for (std::size_t k = 0; k < count; ++k) {
     if (space.start_weight[k] == 0.0F || space.lit[k] != 0) continue;
@@ -289,12 +289,11 @@ void PathWalker::find_lit(std::size_t count, WalkSpace& space) const {
 void PathWalker::splat_one(const WalkSpace& space, std::size_t k, float weight, BatchTally& tally) const {
   const InteractionBatch& met = space.met;
   const float share = met.reflectance[k];
-  const Eigen::Vector3f reflected(met.reflected_x[k], met.reflected_y[k], met.reflected_z[k]);
-  if (share > 0.0F) leave_unhindered(Branch::Reflected, reflected, double{weight * share}, tally);
+  if (share > 0.0F)
+    leave_unhindered(Branch::Reflected, met.reflected_z[k], met.reflected_bin[k], double{weight * share}, tally);
   const double rest = double{weight * (1.0F - share)};
   if (met.refracts[k] == 0) return tally.add(Fate::Absorbed, rest);
-  const Eigen::Vector3f refracted(met.refracted_x[k], met.refracted_y[k], met.refracted_z[k]);
-  leave_unhindered(Branch::Refracted, refracted, rest, tally);
+  leave_unhindered(Branch::Refracted, met.refracted_z[k], met.refracted_bin[k], rest, tally);
 }
 
 void PathWalker::splat_row(std::uint32_t row, WalkSpace& space, BatchTally& tally) const {
@@ -313,7 +312,7 @@ void PathWalker::splat_row(std::uint32_t row, WalkSpace& space, BatchTally& tall
       space.hits.slope_y[count++] = (z01 - z00) * per_y;
     }
     shine(count, space);
-    interact_geometric(options_.material, space.aimed.rays, space.hits, count, space.met);
+    interact_geometric(options_.material, options_.grid, space.aimed.rays, space.hits, count, space.met);
     for (std::size_t k = 0; k < count; ++k) {
       if (space.start_weight[k] > 0.0F) splat_one(space, k, space.start_weight[k], tally);
     }

@@ -16,9 +16,11 @@ namespace mezzotint {
 
 /// Paths on their way: their rays and what they carry, all after the same number of interactions.
 struct PathBatch {
-  explicit PathBatch(std::size_t capacity) : rays(capacity), weight(capacity), number(capacity), branch(capacity) {}
+  explicit PathBatch(std::size_t capacity)
+      : rays(capacity), weight(capacity), bin(capacity), number(capacity), branch(capacity) {}
   RayBatch rays;
   std::vector<float> weight;
+  std::vector<std::uint32_t> bin;     ///< of the map, should nothing stand in the way
   std::vector<std::uint64_t> number;  ///< of the first ray, among all rays of the run: names its random numbers
   std::vector<std::uint8_t> branch;   ///< 0 was reflected first, 1 refracted: they draw different random numbers
   std::vector<float> slides_factor;   ///< (ω·m) at the last interaction; Estimator::Slides alone fills it

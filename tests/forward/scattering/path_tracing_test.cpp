@@ -178,6 +178,7 @@ TEST(PathTracing, ReportsErrorsThatCoverTheTruth) {
   const HeightField field = test::random_relief(64, 0.3);
   PathTracingOptions options = options_at(30.0, Mirror{});
   options.grid = {16, 16};
+  options.batches = 32;
   const Bsdf rough = trace_bsdf(field, options);
   options.samples <<= 4;
   options.seed = 7;
