@@ -54,5 +54,6 @@ Command add_bsdf(CLI::App& program);
 Command add_job(CLI::App& program);
 Command add_print(CLI::App& program);
 Command add_validate(CLI::App& program);
+Command add_chart(CLI::App& program);
 
 }  // namespace mezzotint

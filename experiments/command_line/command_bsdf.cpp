@@ -3,12 +3,10 @@
 
 #include "experiments/command_line/command.h"
 #include "experiments/command_line/option_checks.h"
-#include "experiments/configuration/experiment_file.h"
 #include "experiments/version.h"
 #include "forward/base/quantity.h"
-#include "forward/optics/microfacet.h"
+#include "forward/ladder/ladder.h"
 #include "forward/scattering/path_tracing.h"
-#include "forward/surface/slope_covariance.h"
 #include "measurement/formats/surface_file.h"
 
 namespace mezzotint {
@@ -28,6 +26,7 @@ struct BsdfArguments {
   double samples = 0.0;
   double tolerance = 0.0;
   double seconds = 0.0;
+  double wavelength_nm = 550.0;
   std::uint32_t max_bounces = 64;
   std::uint32_t bounce_orders = 0;
   bool resume = false;
@@ -66,45 +65,51 @@ PathTracingOptions tracing_options(const BsdfArguments& arguments, std::uint64_t
   return options;
 }
 
-// The lowest rung: Gaussian slopes of the relief's own covariance. Exact maps, so no standard error.
-Bsdf from_moments(const HeightField& relief, const SimulationSpecification& simulation,
-                  const DirectionAngles& incidence) {
-  Bsdf bsdf{.incidence = incidence, .grid = {simulation.resolution, simulation.resolution}};
-  const BeckmannLobe lobe = lobe_of(principal_axes(slope_covariance(relief)));
-  DirectionMap map = reflection_map(lobe, simulation.material, incidence, bsdf.grid);
-  const DirectionMap none(bsdf.grid.size(), 0.0);
-  bsdf.reflection = {map, none, map, map};
-  bsdf.transmission = {none, none, none, none};
-  const auto areas = projected_solid_angles(bsdf.grid);
-  for (std::size_t bin = 0; bin < map.size(); ++bin) bsdf.energy.reflected.value += areas[bin] * map[bin];
-  bsdf.energy.cut_off.value = 1.0 - bsdf.energy.reflected.value;
-  bsdf.provenance["model"] =
-      "moments: anisotropic Beckmann, height-correlated Smith, single reflection; the rest is cut off";
-  return bsdf;
+LadderOptions ladder_options(const BsdfArguments& arguments, const PathTracingOptions& tracing) {
+  return {.incidence = tracing.incidence,
+          .grid = tracing.grid,
+          .material = tracing.material,
+          .tolerance = tolerance_of(arguments),
+          .wavelength = Length::from_nm(arguments.wavelength_nm),
+          .seed = tracing.seed};
+}
+
+Bsdf by_model(const BsdfArguments& arguments, const HeightField& relief, const PathTracingOptions& tracing,
+              const Progress& progress) {
+  if (arguments.model == "moments") return bsdf_from_moments(relief, ladder_options(arguments, tracing));
+  PathTracer tracer(relief);
+  if (arguments.model == "slopes") return tracer.splat(tracing);
+  if (arguments.model == "auto") return simulate_auto(relief, tracer, ladder_options(arguments, tracing), progress);
+  return tracer.trace(tracing, progress);
 }
 
 Bsdf compute(const BsdfArguments& arguments, const CommandContext& context) {
   const bool budget = arguments.samples > 0.0 || arguments.seconds > 0.0 || arguments.resume;
-  require(arguments.model != "moments" || !budget,
-          "the moments are a closed form: --samples, --time and --resume mean nothing there");
+  require(!budget || arguments.model == "paths" || arguments.model == "single",
+          "--samples, --time and --resume are for the models paths and single; " + arguments.model +
+              " knows by itself how much work it needs");
   require(std::filesystem::path(arguments.output).extension() == ".exr",
           arguments.output + ": a BSDF is written as .exr");
   require(arguments.incidence[0] >= 0.0 && arguments.incidence[0] <= 89.0,
           "--incidence: the light comes from above, THETA from 0 to 89; a lower ray would cross the relief for ever");
   require_folder_of(arguments.output);
   const SurfaceFile surface = read_surface(arguments.input);
-  SimulationSpecification simulation;
-  simulation.material = parse_material(arguments.material);
-  simulation.resolution = arguments.resolution;
-  const DirectionAngles incidence{Angle::from_degrees(arguments.incidence[0]),
-                                  Angle::from_degrees(arguments.incidence[1])};
   const std::uint64_t seed = context.common.seed >= 0 ? static_cast<std::uint64_t>(context.common.seed) : 1;
-  Bsdf bsdf = arguments.model == "moments"
-                  ? from_moments(surface.field, simulation, incidence)
-                  : trace_bsdf(surface.field, tracing_options(arguments, seed), context.progress);
+  Bsdf bsdf = by_model(arguments, surface.field, tracing_options(arguments, seed), context.progress);
   bsdf.provenance["program"] = std::string("mezzotint ") + program_version;
   bsdf.provenance["source"] = std::filesystem::path(arguments.input).filename().string();
   return bsdf;
+}
+
+std::string entry_of(const Bsdf& bsdf, const std::string& key) {
+  const auto found = bsdf.provenance.find(key);
+  return found == bsdf.provenance.end() ? "" : found->second;
+}
+
+// Why `auto` chose what it chose, and what it warns of.
+std::string words_of(const Bsdf& bsdf) {
+  const std::string choice = entry_of(bsdf, "choice"), warnings = entry_of(bsdf, "warnings");
+  return (choice.empty() ? "" : "\n" + choice) + (warnings.empty() ? "" : "\nwarning: " + warnings);
 }
 
 void add_arguments(CLI::App& app, BsdfArguments& arguments) {
@@ -117,9 +122,14 @@ void add_arguments(CLI::App& app, BsdfArguments& arguments) {
       ->required();
   app.add_option("--material", arguments.material,
                  "mirror, dielectric:ETA[,ABSORPTION per um] or conductor:ETA,KAPPA (default dielectric:1.5)");
-  app.add_option("--model", arguments.model,
-                 "paths (default; auto means it too so far), single (no second interaction) or moments")
-      ->check(CLI::IsMember({"auto", "paths", "single", "moments"}));
+  app.add_option(
+         "--model", arguments.model,
+         "paths (default), single (no second interaction), slopes (all facets, no rays), moments (a Gaussian lobe), "
+         "or auto: the cheapest that meets the tolerance")
+      ->check(CLI::IsMember({"auto", "paths", "single", "slopes", "moments"}));
+  app.add_option("--wavelength", arguments.wavelength_nm,
+                 "Of the light in nm, for auto's verdict on geometric optics (default 550)")
+      ->check(in_range(200.0, 20000.0));
   app.add_option("--resolution", arguments.resolution, "Bins a side of the direction map (default 64)")
       ->check(CLI::Range(8, 1024));
   app.add_option("--samples", arguments.samples,
@@ -164,9 +174,12 @@ Command add_bsdf(CLI::App& program) {
                  {"left_sideways",
                   Quantity{bsdf.energy.left_sideways.value, "1", bsdf.energy.left_sideways.standard_error}},
                  {"cut_off", Quantity{bsdf.energy.cut_off.value, "1", bsdf.energy.cut_off.standard_error}},
+                 {"model", bsdf.provenance.at("model")},
+                 {"choice", entry_of(bsdf, "choice")},
+                 {"warnings", entry_of(bsdf, "warnings")},
                  {"relative_standard_error", error}},
-                fmt::format("wrote {}: albedo {:.5f} ± {:.2g}, relative standard error of the map {:.2g}",
-                            arguments->output, albedo.value, albedo.standard_error, error));
+                fmt::format("wrote {}: albedo {:.5f} ± {:.2g}, relative standard error of the map {:.2g}{}",
+                            arguments->output, albedo.value, albedo.standard_error, error, words_of(bsdf)));
             const bool fell_short = has_tolerance(*arguments) && error > tolerance_of(*arguments);
             return fell_short ? ExitStatus::ToleranceMissed : ExitStatus::Done;
           }};

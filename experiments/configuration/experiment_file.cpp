@@ -69,8 +69,7 @@ SimulationSpecification read_simulation(TomlTable table) {
   }
   simulation.wavelength = Length::from_nm(table.number("wavelength_nm", {200.0, 20000.0}, 550.0));
   simulation.material = read_material(table);
-  // One rung of the ladder predicts its own error so far; "auto" can only mean that one.
-  (void)table.choice("model", {"auto", "paths"}, "auto");
+  simulation.model = table.choice("model", {"auto", "paths"}, simulation.model);
   simulation.resolution = static_cast<std::size_t>(table.integer("resolution", 8, 1024, 64));
   simulation.tolerance = table.number("tolerance", {1e-4, 1.0}, simulation.tolerance);
   simulation.most_samples = static_cast<std::uint64_t>(

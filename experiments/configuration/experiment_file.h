@@ -35,6 +35,7 @@ struct SimulationSpecification {
   std::vector<DirectionAngles> incidences;
   Length wavelength = Length::from_nm(550.0);
   Material material = Dielectric{1.5};
+  std::string model = "auto";  ///< or "paths"
   std::size_t resolution = 64;
   double tolerance = 0.02;  ///< wanted relative standard error of a map
   std::uint64_t most_samples = std::uint64_t{1} << 24;

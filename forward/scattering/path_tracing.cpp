@@ -68,7 +68,7 @@ std::uint32_t pass_bits(std::uint32_t pass, std::uint32_t first_bits) {
 bool splat_is_possible(const PathTracingOptions& options, const PeriodicTile& tile) {
   const auto* clear = std::get_if<Dielectric>(&options.material);
   return options.normals == NormalKind::Geometric && options.estimator == Estimator::Flux && !tile.mirrored() &&
-         !options.spread_incidence_over_bin && options.tracer == TracerKind::HeightField &&
+         !options.spread_incidence_over_bin && options.tracer == TracerKind::HeightField && !options.roulette_first &&
          (clear == nullptr || clear->absorption_per_um == 0.0);
 }
 
@@ -125,19 +125,61 @@ struct PathTracer::Scene {
     return sha256_hex({reinterpret_cast<const std::byte*>(text.data()), text.size()});
   }
 
+  // The splat of one setting, kept for the next run of the same.
+  const BatchTally& splat(const PathTracingOptions& options);
+
   PeriodicTile tile;
   std::optional<HeightFieldTracer> fast;
   std::optional<ReliefScene> triangles;
   std::optional<double> known_gradient;
   bool has_normals = false;
+  std::string splat_key;
+  std::optional<BatchTally> kept_splat;
 };
+
+namespace {
+
+BatchTally empty_tally(const PathTracingOptions& options) {
+  BatchTally empty(options.grid);
+  if (options.bounce_orders > 0) empty.keep_orders(options.bounce_orders);
+  return empty;
+}
+
+BatchTally splat_all(const PeriodicTile& tile, const ReliefTracer& tracer, const PathTracingOptions& options) {
+  const PathWalker walker(tile, tracer, options);
+  std::vector<BatchTally> groups(splat_groups, empty_tally(options));
+  tbb::parallel_for(std::uint32_t{0}, splat_groups, [&](std::uint32_t group) {
+    WalkSpace space;
+    const std::uint64_t rows = tile.rows();
+    for (std::uint64_t row = rows * group / splat_groups; row < rows * (group + 1) / splat_groups; ++row) {
+      walker.splat_row(static_cast<std::uint32_t>(row), space, groups[group]);
+      groups[group].close_slice();
+    }
+  });
+  BatchTally all = empty_tally(options);
+  for (const BatchTally& group : groups) all.add(group);
+  return all;
+}
+
+}  // namespace
+
+const BatchTally& PathTracer::Scene::splat(const PathTracingOptions& options) {
+  const std::string key =
+      fmt::format("{:a} {:a} {}x{} {} {}", options.incidence.theta.radians(), options.incidence.phi.radians(),
+                  options.grid.width, options.grid.height, to_string(options.material), options.bounce_orders);
+  if (!kept_splat || key != splat_key) {
+    kept_splat = splat_all(tile, height_field(), options);
+    splat_key = key;
+  }
+  return *kept_splat;
+}
 
 namespace {
 
 /// One call of trace: passes until the budget or the tolerance is met.
 class Run {
 public:
-  Run(const PeriodicTile& tile, const ReliefTracer& tracer, const HeightFieldTracer* fast, bool splat,
+  Run(const PeriodicTile& tile, const ReliefTracer& tracer, const HeightFieldTracer* fast, const BatchTally* splat,
       const PathTracingOptions& options, const Progress& progress)
       : tile_(tile),
         options_(options),
@@ -145,14 +187,11 @@ public:
         walker_(tile, tracer, options),
         splat_(splat),
         start_(std::chrono::steady_clock::now()) {
-    if (!splat && fast != nullptr && !options.spread_incidence_over_bin) {
+    if (splat == nullptr && fast != nullptr && !options.spread_incidence_over_bin) {
       front_.emplace(fast->pyramid(), -to_direction(options.incidence), tile.mean());
     }
     light_.emplace(tile, options, front_ ? &*front_ : nullptr);
-    BatchTally empty(options.grid);
-    if (options.bounce_orders > 0) empty.keep_orders(options.bounce_orders);
-    state_.tallies.assign(options.batches, empty);
-    single_scattering_.emplace(empty);
+    state_.tallies.assign(options.batches, empty_tally(options));
   }
 
   void resume(const std::string& run) {
@@ -161,7 +200,6 @@ public:
   }
 
   TraceResult go() {
-    if (splat_) splat_all();
     const bool stepwise = options_.tolerance > 0.0 || options_.seconds > 0.0 || !options_.state.empty();
     const std::uint32_t whole = bits_for(options_.samples, options_.batches);
     const std::uint32_t first = stepwise ? std::min(whole, bits_for(paths_of_first_pass, options_.batches)) : whole;
@@ -186,22 +224,9 @@ private:
     return options_.seconds > 0.0 && seconds() >= options_.seconds;
   }
   [[nodiscard]] TraceResult result() const {
-    return summarise(options_, state_, splat_ ? &*single_scattering_ : nullptr, 2.0 * tile_.columns() * tile_.rows());
+    return summarise(options_, state_, splat_, 2.0 * tile_.columns() * tile_.rows());
   }
   [[nodiscard]] double error() const { return relative_error(options_.grid, result().bsdf.reflection); }
-
-  void splat_all() {
-    std::vector<BatchTally> groups(splat_groups, *single_scattering_);
-    tbb::parallel_for(std::uint32_t{0}, splat_groups, [&](std::uint32_t group) {
-      WalkSpace& space = spaces_.local();
-      const std::uint64_t rows = tile_.rows();
-      for (std::uint64_t row = rows * group / splat_groups; row < rows * (group + 1) / splat_groups; ++row) {
-        walker_.splat_row(static_cast<std::uint32_t>(row), space, groups[group]);
-        groups[group].close_slice();
-      }
-    });
-    for (const BatchTally& group : groups) single_scattering_->add(group);
-  }
 
   void pass(std::uint32_t bits) {
     const std::uint64_t rays = std::uint64_t{1} << bits;
@@ -255,11 +280,10 @@ private:
   std::optional<BeamFront> front_;
   std::optional<IncidentLight> light_;
   PathWalker walker_;
-  bool splat_;
+  const BatchTally* splat_;  ///< nullptr where paths are everything
   std::chrono::steady_clock::time_point start_;
   std::string run_;
   TraceState state_;
-  std::optional<BatchTally> single_scattering_;
   tbb::enumerable_thread_specific<WalkSpace> spaces_;
 };
 
@@ -267,11 +291,12 @@ private:
 std::string run_digest(const std::string& relief, const PathTracingOptions& options, bool splat) {
   const std::string text = fmt::format(
       "{} {:a} {:a} {} {}x{} {} batches {} bounces {} orders {} estimator {} normals {} tracer {} placement {} splat "
-      "{} seed {}",
+      "{} roulette {} seed {}",
       relief, options.incidence.theta.radians(), options.incidence.phi.radians(), options.spread_incidence_over_bin,
       options.grid.width, options.grid.height, to_string(options.material), options.batches, options.max_bounces,
       options.bounce_orders, static_cast<int>(options.estimator), static_cast<int>(options.normals),
-      static_cast<int>(options.tracer), static_cast<int>(options.placement), splat, options.seed);
+      static_cast<int>(options.tracer), static_cast<int>(options.placement), splat, options.roulette_first,
+      options.seed);
   return sha256_hex({reinterpret_cast<const std::byte*>(text.data()), text.size()});
 }
 
@@ -300,9 +325,32 @@ Bsdf PathTracer::trace(const PathTracingOptions& options, const Progress& progre
   const bool height_field = options.tracer == TracerKind::HeightField;
   if (!height_field && !scene_->triangles) report(progress, "trace", 0.0, "building the tree of triangles");
   const HeightFieldTracer* fast = height_field ? &scene_->height_field() : nullptr;
-  Run run(scene_->tile, scene_->tracer(options.tracer), fast, splat, options, progress);
+  Run run(scene_->tile, scene_->tracer(options.tracer), fast, splat ? &scene_->splat(options) : nullptr, options,
+          progress);
   if (!options.state.empty()) run.resume(run_digest(scene_->digest(), options, splat));
   return run.go().bsdf;
+}
+
+Bsdf PathTracer::splat(const PathTracingOptions& options) {
+  require_valid(options);
+  PathTracingOptions wanted = options;
+  wanted.control_variate = ControlVariate::On;
+  (void)use_splat(wanted, scene_->tile, 0.0);
+  return splat_result(options, scene_->splat(options), 2.0 * scene_->tile.columns() * scene_->tile.rows());
+}
+
+PathTracer::ReliefFacts PathTracer::facts() {
+  const PeriodicTile& tile = scene_->tile;
+  double square = 0.0;
+  for (std::uint32_t row = 0; row < tile.rows(); ++row) {
+    for (std::uint32_t column = 0; column < tile.columns(); ++column) {
+      const double z = tile.height(column, row) - tile.mean();
+      square += z * z;
+    }
+  }
+  const double cells = double{1} * tile.columns() * tile.rows();
+  return {scene_->gradient(), double{scene_->height_field().pyramid().steepest},
+          std::sqrt(square / cells) * tile.unit_um()};
 }
 
 Bsdf trace_bsdf(const HeightField& field, const PathTracingOptions& options, const Progress& progress) {

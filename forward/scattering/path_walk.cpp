@@ -108,6 +108,12 @@ void PathWalker::split(const RayBatch& rays, std::size_t count, std::uint64_t fi
     if (weight == 0.0F) continue;
     ++tally.interactions;
     const float share = space.met.reflectance[k];
+    if (options_.roulette_first && space.met.refracts[k] != 0) {
+      const bool reflect = choices_.uniform4(first_index + k, 2U << 24)[0] < double{share};
+      push(space, k, reflect ? Branch::Reflected : Branch::Refracted, reflect ? Side::Outside : Side::Inside, weight,
+           first_index + k, reflect ? 0 : 1, next);
+      continue;
+    }
     if (share > 0.0F) push(space, k, Branch::Reflected, Side::Outside, weight * share, first_index + k, 0, next);
     if (space.met.refracts[k] != 0) {
       push(space, k, Branch::Refracted, Side::Inside, weight * (1.0F - share), first_index + k, 1, next);

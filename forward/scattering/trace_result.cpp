@@ -188,4 +188,27 @@ TraceResult summarise(const PathTracingOptions& options, const TraceState& state
   return result;
 }
 
+Bsdf splat_result(const PathTracingOptions& options, const BatchTally& splat, double facets) {
+  const double total = sum_of(splat.total_energy);
+  const std::vector<double> scale = map_scale(options.grid, total);
+  const auto exact = [&](const DirectionMap& tally) {
+    DirectionMap map(tally.size());
+    for (std::size_t k = 0; k < map.size(); ++k) map[k] = tally[k] * scale[k];
+    return MapEstimate{map, DirectionMap(map.size(), 0.0), map, map};
+  };
+  Bsdf bsdf{.incidence = options.incidence, .grid = options.grid};
+  bsdf.reflection = exact(splat.reflected);
+  bsdf.transmission = exact(splat.transmitted);
+  const auto share = [&](Fate fate) {
+    return Estimate{splat.total_energy[static_cast<std::size_t>(fate)] / total, 0.0};
+  };
+  bsdf.energy = {share(Fate::Reflected), share(Fate::Transmitted), share(Fate::Absorbed), {}, {}};
+  bsdf.provenance = {{"model", "slopes"},
+                     {"control_variate", "none"},
+                     {"material", to_string(options.material)},
+                     {"normals", "geometric"},
+                     {"unadjusted_energy", fmt::format("{:.8g}", total / facets)}};
+  return bsdf;
+}
+
 }  // namespace mezzotint

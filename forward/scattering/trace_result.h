@@ -16,4 +16,7 @@ struct TraceResult {
 [[nodiscard]] TraceResult summarise(const PathTracingOptions& options, const TraceState& state, const BatchTally* splat,
                                     double facets);
 
+/// What a splat alone amounts to, divided by its total.
+[[nodiscard]] Bsdf splat_result(const PathTracingOptions& options, const BatchTally& splat, double facets);
+
 }  // namespace mezzotint

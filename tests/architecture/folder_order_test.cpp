@@ -17,8 +17,9 @@ const fs::path root = MEZZOTINT_SOURCE_DIR;
 // forward from the ground floor up.
 const std::map<std::string, int> houses = {
     {"forward", 0}, {"measurement", 1}, {"inverse", 2}, {"fabrication", 2}, {"experiments", 3}};
-const std::map<std::string, int> forward_rooms = {{"base", 0},    {"surface", 1},    {"pattern", 2},  {"optics", 2},
-                                                  {"process", 3}, {"tracing", 3}, {"bsdf_table", 3}, {"scattering", 4}, {"ladder", 5}, {"rendering", 6}};
+const std::map<std::string, int> forward_rooms = {{"base", 0},    {"surface", 1},  {"pattern", 2},    {"optics", 2},
+                                                  {"process", 3}, {"tracing", 3},  {"bsdf_table", 3}, {"scattering", 4},
+                                                  {"ladder", 5},  {"rendering", 6}};
 
 struct Include {
   fs::path file;
