@@ -15,12 +15,10 @@ namespace mezzotint {
 
 namespace {
 
-// The pilot: its paths cost a tenth of the splat of a 1024² relief.
-constexpr std::uint64_t pilot_paths = std::uint64_t{1} << 14;
+// The pilot has a path for every 64 facets, so that it costs a part of the splat, within these bounds.
+constexpr std::uint64_t least_pilot = std::uint64_t{1} << 10, most_pilot = std::uint64_t{1} << 14;
 // One side of a 95 % interval, as the pilot's own error is known from 8 batches (Student's t, 7 degrees of freedom).
 constexpr double bound = 1.9;
-// Below this the slopes of a relief of finite size are hardly ever Gaussian enough (its speckle alone exceeds it).
-constexpr double loose_tolerance = 0.03;
 
 PathTracingOptions tracing_options(const LadderOptions& options) {
   PathTracingOptions tracing;
@@ -41,21 +39,19 @@ bool nothing_can_be_met_twice(const PathTracer::ReliefFacts& facts, const Direct
   return way_in > tilt && lowest_way_out > tilt;
 }
 
-Forecast forecast_moments(const LadderOptions& options, const DirectionMap& moments, const DirectionMap& slopes) {
-  const double error = relative_l2(options.grid, moments, slopes);
-  return {
-      Rung::Moments, error,
-      fmt::format("the relief's own slopes give a lobe that differs by {:.2g} % from the Gaussian one", 100.0 * error)};
+std::uint64_t pilot_paths(const HeightField& field) {
+  return std::clamp<std::uint64_t>(2 * field.grid().size() / 64, least_pilot, most_pilot);
 }
 
-Forecast forecast_slopes(const LadderOptions& options, const MapEstimate& pilot, const DirectionMap& slopes) {
+Forecast forecast_slopes(const LadderOptions& options, std::uint64_t paths, const MapEstimate& pilot,
+                         const DirectionMap& slopes) {
   const MapDifference difference = relative_l2(options.grid, pilot, slopes);
   const double error = difference.corrected.value + bound * difference.corrected.standard_error;
   return {
       Rung::Slopes, error,
       fmt::format("a pilot of {} paths finds {:.2g} % (at most {:.2g} %) of the lobe changed by shadows and further "
                   "interactions",
-                  pilot_paths, 100.0 * difference.corrected.value, 100.0 * error)};
+                  paths, 100.0 * difference.corrected.value, 100.0 * error)};
 }
 
 void explain(const Choice& choice, Bsdf& bsdf) {
@@ -134,7 +130,6 @@ Bsdf simulate_auto(const HeightField& field, PathTracer& tracer, const LadderOpt
   choice.warnings = geometric_optics_warnings(facts, options);
   PathTracingOptions tracing = tracing_options(options);
   const double steepness = facts.rms_gradient * std::tan(options.incidence.theta.radians());
-  Bsdf result;
   const auto finish = [&](Bsdf&& bsdf) {
     choice.rung = choice.forecasts.back().rung;
     explain(choice, bsdf);
@@ -143,10 +138,6 @@ Bsdf simulate_auto(const HeightField& field, PathTracer& tracer, const LadderOpt
   };
   if (field.periodic() && steepness < control_variate_limit) {
     Bsdf slopes = tracer.splat(tracing);
-    if (options.tolerance >= loose_tolerance) {
-      Bsdf moments = bsdf_from_moments(field, options);
-      choice.forecasts.push_back(forecast_moments(options, moments.reflection.mean, slopes.reflection.mean));
-    }
     if (nothing_can_be_met_twice(facts, options.incidence)) {
       choice.forecasts.push_back({Rung::Slopes, 0.0,
                                   fmt::format("no facet is steeper than {:.3g}: no light can be shadowed or meet the "
@@ -155,9 +146,9 @@ Bsdf simulate_auto(const HeightField& field, PathTracer& tracer, const LadderOpt
       return finish(std::move(slopes));
     }
     PathTracingOptions pilot = tracing;
-    pilot.samples = pilot_paths;
+    pilot.samples = pilot_paths(field);
     const Bsdf first = tracer.trace(pilot);
-    const Forecast forecast = forecast_slopes(options, first.reflection, slopes.reflection.mean);
+    const Forecast forecast = forecast_slopes(options, pilot.samples, first.reflection, slopes.reflection.mean);
     choice.forecasts.push_back(forecast);
     if (forecast.error <= options.tolerance) return finish(std::move(slopes));
   }

@@ -9,18 +9,20 @@ namespace mezzotint::test {
 namespace {
 
 // One line a command, each with what the ones before it left.
-const std::vector<std::string> every_command = {"run small.toml --out run",
-                                                "design small.toml --out design",
-                                                "job run/job.uvj",
-                                                "print run/job.uvj -o printed.gwy --subsamples 2",
-                                                "validate run/design.gwy --measured run/measured.gwy -o validation",
-                                                "synthesize pattern.toml -o relief.gwy",
-                                                "info relief.gwy",
-                                                "roughness relief.gwy",
-                                                "correct relief.gwy -o corrected.gwy --level plane",
-                                                "convert relief.gwy relief.obj",
-                                                "mesh relief.gwy -o mesh.obj",
-                                                "bsdf relief.gwy --incidence 20,0 --samples 1e4 -o lobe.exr"};
+const std::vector<std::string> every_command = {
+    "run small.toml --out run",
+    "design small.toml --out design",
+    "job run/job.uvj",
+    "print run/job.uvj -o printed.gwy --subsamples 2",
+    "validate run/design.gwy --measured run/measured.gwy -o validation",
+    "synthesize pattern.toml -o relief.gwy",
+    "info relief.gwy",
+    "roughness relief.gwy",
+    "correct relief.gwy -o corrected.gwy --level plane",
+    "convert relief.gwy relief.obj",
+    "mesh relief.gwy -o mesh.obj",
+    "chart --cells 64 --resolution 8 --gradients 0.1 --incidences 0 -o chart",
+    "bsdf relief.gwy --incidence 20,0 --samples 1e4 -o lobe.exr"};
 
 // The first word of each line under "Subcommands:".
 std::set<std::string> commands_in_the_help(const std::string& help) {
