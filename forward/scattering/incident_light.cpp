@@ -13,6 +13,18 @@ namespace {
 constexpr double start_clearance = 1e-2;
 constexpr std::size_t slice = 256;
 
+// Rounds down; the baseline of x86-64 has no instruction for it, and a call a coordinate is a tenth of all tracing.
+std::int64_t floor_of(double x) {
+  const auto whole = static_cast<std::int64_t>(x);
+  return whole - (x < static_cast<double>(whole) ? 1 : 0);
+}
+
+std::int32_t wrap(std::int64_t cell, std::int64_t count) {
+  if (cell >= 0 && cell < count) return static_cast<std::int32_t>(cell);
+  const std::int64_t rest = cell % count;
+  return static_cast<std::int32_t>(rest < 0 ? rest + count : rest);
+}
+
 }  // namespace
 
 IncidentLight::IncidentLight(const PeriodicTile& tile, const PathTracingOptions& options, const BeamFront* front)
@@ -72,12 +84,12 @@ void IncidentLight::fill(const SampleStrata& strata, std::uint64_t first, std::u
       const float z = start_height(aim_x, aim_y);
       const double rise = double{z} - tile_.mean();
       const double x = aim_x + rise * shift_x, y = aim_y + rise * shift_y;
-      const double cell_x = std::floor(x), cell_y = std::floor(y);
-      rays.x[at] = static_cast<float>(x - cell_x);
-      rays.y[at] = static_cast<float>(y - cell_y);
+      const std::int64_t cell_x = floor_of(x), cell_y = floor_of(y);
+      rays.x[at] = static_cast<float>(x - static_cast<double>(cell_x));
+      rays.y[at] = static_cast<float>(y - static_cast<double>(cell_y));
       rays.z[at] = z;
-      rays.cell_x[at] = static_cast<std::int32_t>(cell_x - columns_ * std::floor(cell_x / columns_));
-      rays.cell_y[at] = static_cast<std::int32_t>(cell_y - rows_ * std::floor(cell_y / rows_));
+      rays.cell_x[at] = wrap(cell_x, columns_);
+      rays.cell_y[at] = wrap(cell_y, rows_);
       rays.dx[at] = static_cast<float>(-light.x());
       rays.dy[at] = static_cast<float>(-light.y());
       rays.dz[at] = static_cast<float>(-light.z());

@@ -46,7 +46,7 @@ private:
   const PeriodicTile& tile_;
   const BeamFront* front_;
   Direction to_light_;
-  double columns_, rows_;              ///< of the tile
+  std::int64_t columns_, rows_;        ///< of the tile
   double aimed_columns_, aimed_rows_;  ///< of its measured part
   std::optional<Pixel> pixel_;
   RandomStream directions_;
