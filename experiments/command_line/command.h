@@ -51,6 +51,7 @@ Command add_roughness(CLI::App& program);
 Command add_synthesize(CLI::App& program);
 Command add_mesh(CLI::App& program);
 Command add_bsdf(CLI::App& program);
+Command add_bsdf_table(CLI::App& program);
 Command add_job(CLI::App& program);
 Command add_print(CLI::App& program);
 Command add_validate(CLI::App& program);

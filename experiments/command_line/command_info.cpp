@@ -6,6 +6,7 @@
 #include "experiments/command_line/command.h"
 #include "fabrication/job/job.h"
 #include "forward/base/quantity.h"
+#include "forward/bsdf_table/bsdf_table_file.h"
 #include "forward/optics/bsdf.h"
 #include "measurement/formats/surface_file.h"
 
@@ -53,6 +54,18 @@ Json describe(const Bsdf& bsdf) {
           {"provenance", bsdf.provenance}};
 }
 
+Json describe(const BsdfTable& table) {
+  Json directions = Json::object();
+  for (const BsdfTableNode& node : table.nodes) {
+    directions[fmt::format("{:.2f}°, {:.2f}°", node.incidence.theta.degrees(), node.incidence.phi.degrees())] =
+        Quantity{node.energy.reflected.value, "1", node.energy.reflected.standard_error};
+  }
+  return {{"format", "BSDF table (OpenEXR)"}, {"width", table.grid.width},
+          {"height", table.grid.height},      {"rings", table.incidences.rings.size()},
+          {"incidences", table.nodes.size()}, {"albedo_by_incidence", directions},
+          {"provenance", table.provenance}};
+}
+
 Json describe(const Job& job) {
   return {{"format", "uvj"},
           {"name", job.name},
@@ -77,7 +90,8 @@ bool begins_with(const std::filesystem::path& path, std::string_view magic) {
 
 Json describe_any(const std::filesystem::path& path) {
   if (path.extension() == ".uvj") return describe(read_uvj(path));
-  if (begins_with(path, "\x76\x2f\x31\x01")) return describe(read_exr(path));
+  if (begins_with(path, "\x76\x2f\x31\x01"))
+    return is_bsdf_table(path) ? describe(read_bsdf_table(path)) : describe(read_exr(path));
   return describe(read_surface(path));
 }
 

@@ -191,6 +191,15 @@ void write_bsdf_table(const BsdfTable& table, const fs::path& path) {
   });
 }
 
+bool is_bsdf_table(const fs::path& path) {
+  const std::vector<std::byte> bytes = read_file(path);
+  require_sound_exr_header(bytes, path);
+  OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
+  const std::unique_ptr<OIIO::ImageInput> file = OIIO::ImageInput::create("exr", false, nullptr, &memory);
+  OIIO::ImageSpec spec;
+  return file && file->open(path.string(), spec) && !spec.get_string_attribute(header_name).empty();
+}
+
 BsdfTable read_bsdf_table(const fs::path& path) {
   const std::vector<std::byte> bytes = read_file(path);
   require_sound_exr_header(bytes, path);

@@ -15,6 +15,10 @@ namespace mezzotint {
 ///         cannot be written.
 void write_bsdf_table(const BsdfTable& table, const std::filesystem::path& path);
 
+/// Whether an EXR says that it is a table; whether it is a whole one shows when it is read.
+/// @throws FileError for a file that is no EXR, or whose header is damaged.
+[[nodiscard]] bool is_bsdf_table(const std::filesystem::path& path);
+
 /// Reads what `write_bsdf_table` wrote, also after another tool has rewritten it without loss.
 /// @throws FileError for a file that is no such picture, is truncated, larger than 4096 × 4096, or contradicts itself;
 ///         header and sizes are looked at before memory is taken for pixels.
