@@ -46,13 +46,12 @@ double noise_of(const BsdfTableArguments& arguments) {
   return arguments.noise > 0.0 ? arguments.noise : arguments.tolerance / 4.0;
 }
 
-BsdfTableOptions table_options(const BsdfTableArguments& arguments) {
+BsdfTableOptions table_options(const BsdfTableArguments& arguments, const Material& material) {
   BsdfTableOptions options;
   options.symmetry = {symmetry_kinds().at(arguments.symmetry), Angle::from_degrees(arguments.axis_deg)};
   options.largest_theta = Angle::from_degrees(arguments.largest_theta_deg);
   options.tolerance = arguments.tolerance;
   options.most_incidences = arguments.most_incidences;
-  const Material material = parse_material(arguments.material);
   if (const auto* dielectric = std::get_if<Dielectric>(&material)) options.relative_index = dielectric->eta;
   return options;
 }
@@ -60,17 +59,17 @@ BsdfTableOptions table_options(const BsdfTableArguments& arguments) {
 // One direction of the light: by the ladder, or by paths alone.
 class DirectionByDirection {
 public:
-  DirectionByDirection(const BsdfTableArguments& arguments, const HeightField& relief, std::uint64_t seed)
-      : arguments_(arguments), relief_(relief), tracer_(relief), seed_(seed) {}
+  DirectionByDirection(const BsdfTableArguments& arguments, const HeightField& relief, const Material& material,
+                       std::uint64_t seed)
+      : arguments_(arguments), relief_(relief), material_(material), tracer_(relief), seed_(seed) {}
 
   Bsdf compute(const DirectionAngles& to_light, const Progress& progress) {
     const DirectionGrid grid = {arguments_.resolution, arguments_.resolution};
-    const Material material = parse_material(arguments_.material);
     if (arguments_.model == "auto") {
       LadderOptions options;
       options.incidence = to_light;
       options.grid = grid;
-      options.material = material;
+      options.material = material_;
       options.tolerance = noise_of(arguments_);
       options.seed = seed_;
       return simulate_auto(relief_, tracer_, options, progress);
@@ -78,7 +77,7 @@ public:
     PathTracingOptions options;
     options.incidence = to_light;
     options.grid = grid;
-    options.material = material;
+    options.material = material_;
     options.tolerance = noise_of(arguments_);
     options.samples = std::uint64_t{1} << 30;
     options.seed = seed_;
@@ -88,6 +87,7 @@ public:
 private:
   const BsdfTableArguments& arguments_;
   const HeightField& relief_;
+  const Material& material_;
   PathTracer tracer_;
   std::uint64_t seed_;
 };
@@ -98,17 +98,17 @@ BuiltBsdfTable compute(const BsdfTableArguments& arguments, const CommandContext
   require_folder_of(arguments.output);
   const HeightField relief = read_surface(arguments.input).field;
   const std::uint64_t seed = context.common.seed >= 0 ? static_cast<std::uint64_t>(context.common.seed) : 1;
-  const BsdfTableOptions options = table_options(arguments);
+  const Material material = parse_material(arguments.material);
+  const BsdfTableOptions options = table_options(arguments, material);
 
   std::optional<DirectionStore> store;
   if (arguments.resume) {
-    store.emplace(
-        arguments.output + ".parts", relief,
-        fmt::format("{} {} {} {:a} {} {}", program_version, arguments.model,
-                    to_string(parse_material(arguments.material)), noise_of(arguments), arguments.resolution, seed));
+    store.emplace(arguments.output + ".parts", relief,
+                  fmt::format("{} {} {} {:a} {} {}", program_version, arguments.model, to_string(material),
+                              noise_of(arguments), arguments.resolution, seed));
   }
 
-  DirectionByDirection directions(arguments, relief, seed);
+  DirectionByDirection directions(arguments, relief, material, seed);
   // The bar counts directions; what a direction has to say goes into the note.
   ProgressEvent latest{"bsdf table", 0.0, ""};
   const Progress overall = [&](const ProgressEvent& event) {
@@ -128,7 +128,7 @@ BuiltBsdfTable compute(const BsdfTableArguments& arguments, const CommandContext
   BuiltBsdfTable built = build_bsdf_table(compute_one, options, overall, find_one);
   built.table.provenance = {{"program", std::string("mezzotint ") + program_version},
                             {"source", std::filesystem::path(arguments.input).filename().string()},
-                            {"material", to_string(parse_material(arguments.material))},
+                            {"material", to_string(material)},
                             {"model", arguments.model},
                             {"noise", fmt::format("{}", noise_of(arguments))},
                             {"tolerance", fmt::format("{}", arguments.tolerance)},

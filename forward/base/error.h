@@ -54,7 +54,9 @@ public:
 /// The user asked to stop (Ctrl-C). What is finished is on disk and can be resumed.
 class Interrupted : public Error {
 public:
-  Interrupted() : Error("interrupted; finished stages are kept, --resume goes on", ExitStatus::Failed) {}
+  Interrupted()
+      : Error("interrupted; run and design go on with --resume, and so does what was started with --resume",
+              ExitStatus::Failed) {}
 };
 
 /// Checks a caller's data, before anything is allocated for it.

@@ -12,10 +12,9 @@
 #include <fmt/format.h>
 
 #include "forward/base/error.h"
-#include "forward/base/file_input.h"
 #include "forward/base/file_output.h"
 #include "forward/bsdf_table/bsdf_table_header.h"
-#include "forward/optics/exr_header.h"
+#include "forward/optics/exr_input.h"
 
 namespace mezzotint {
 
@@ -192,22 +191,11 @@ void write_bsdf_table(const BsdfTable& table, const fs::path& path) {
 }
 
 bool is_bsdf_table(const fs::path& path) {
-  const std::vector<std::byte> bytes = read_file(path);
-  require_sound_exr_header(bytes, path);
-  OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
-  const std::unique_ptr<OIIO::ImageInput> file = OIIO::ImageInput::create("exr", false, nullptr, &memory);
-  OIIO::ImageSpec spec;
-  return file && file->open(path.string(), spec) && !spec.get_string_attribute(header_name).empty();
+  return !std::string(open_exr(path).spec.get_string_attribute(header_name)).empty();
 }
 
 BsdfTable read_bsdf_table(const fs::path& path) {
-  const std::vector<std::byte> bytes = read_file(path);
-  require_sound_exr_header(bytes, path);
-  OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
-  const std::unique_ptr<OIIO::ImageInput> file = OIIO::ImageInput::create("exr", false, nullptr, &memory);
-  if (!file) throw DeviceError("cannot read " + path.string() + ": OpenImageIO has no OpenEXR here");
-  OIIO::ImageSpec spec;
-  if (!file->open(path.string(), spec)) throw FileError(path, "header", file->geterror());
+  const auto [bytes, memory, file, spec] = open_exr(path);
   const std::string header = spec.get_string_attribute(header_name);
   if (header.empty()) throw FileError(path, "header", "is no BSDF table of Mezzotint; it may hold a single BSDF");
   BsdfTable table = from_header(header, path);

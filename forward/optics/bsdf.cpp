@@ -13,9 +13,8 @@
 #include <fmt/format.h>
 
 #include "forward/base/error.h"
-#include "forward/base/file_input.h"
 #include "forward/base/file_output.h"
-#include "forward/optics/exr_header.h"
+#include "forward/optics/exr_input.h"
 
 namespace mezzotint {
 
@@ -26,8 +25,6 @@ namespace fs = std::filesystem;
 constexpr const char* prefix = "mezzotint:";
 constexpr const char* provenance_prefix = "mezzotint:provenance.";
 constexpr std::size_t longest_key = 200;  // OpenEXR's names have 255 characters at most
-// 4096² bins of eight floats, that zip could not make smaller, and a header.
-constexpr std::uintmax_t largest_file_bytes = std::uintmax_t{600} << 20;
 
 std::string order_name(std::size_t order) { return "reflection.order_" + std::to_string(order + 1); }
 
@@ -162,16 +159,7 @@ void write_exr(const Bsdf& bsdf, const fs::path& path) {
 }
 
 Bsdf read_exr(const fs::path& path) {
-  std::error_code ignored;
-  const std::uintmax_t size = fs::file_size(path, ignored);
-  if (!ignored && size > largest_file_bytes) throw FileError(path, "", "is larger than any direction map");
-  const std::vector<std::byte> bytes = read_file(path);
-  require_sound_exr_header(bytes, path);
-  OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
-  const std::unique_ptr<OIIO::ImageInput> file = OIIO::ImageInput::create("exr", false, nullptr, &memory);
-  if (!file) throw DeviceError("cannot read " + path.string() + ": OpenImageIO has no OpenEXR here");
-  OIIO::ImageSpec spec;
-  if (!file->open(path.string(), spec)) throw FileError(path, "header", file->geterror());
+  const auto [bytes, memory, file, spec] = open_exr(path);
   Bsdf bsdf;
   bsdf.grid = {static_cast<std::size_t>(spec.width), static_cast<std::size_t>(spec.height)};
   read_attributes(spec, path, bsdf);

@@ -110,5 +110,24 @@ TEST(Resume, RefusesChangedSettings) {
   EXPECT_EQ(here.files("run"), before);
 }
 
+// A budget stands in for the signal: what the short run kept is all that the long one finds.
+TEST(ResumedTable, HasTheBitsOfOneThatNeverStopped) {
+  const Workplace here;
+  ASSERT_EQ(here.mezzotint(words("synthesize pattern.toml -o relief.gwy -q")).status, 0);
+  const std::string table = "bsdf-table relief.gwy --symmetry isotropic --tolerance 0.02 --resolution 16 --json -q ";
+  const auto computed = [&](const std::string& rest) {
+    const Ending ending = here.mezzotint(words(table + rest));
+    EXPECT_EQ(ending.status, 3) << ending.err;
+    return nlohmann::json::parse(ending.out).at("computed").get<int>();
+  };
+  EXPECT_EQ(computed("--most 8 -o whole.exr"), 8);
+  EXPECT_EQ(computed("--most 5 --resume -o parts.exr"), 5);
+  EXPECT_EQ(computed("--most 8 --resume -o parts.exr"), 3);
+  EXPECT_EQ(computed("--most 8 --resume -o parts.exr"), 0);
+  EXPECT_EQ(computed("--most 8 --resume --material mirror -o parts.exr"), 8);
+  EXPECT_EQ(computed("--most 8 --resume -o parts.exr"), 0);
+  EXPECT_EQ(here.read("parts.exr"), here.read("whole.exr"));
+}
+
 }  // namespace
 }  // namespace mezzotint::test

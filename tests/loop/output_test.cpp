@@ -23,7 +23,8 @@ const std::vector<std::string> every_command = {
     "mesh relief.gwy -o mesh.obj",
     "chart --cells 64 --resolution 8 --gradients 0.1 --incidences 0 -o chart",
     "bsdf relief.gwy --incidence 20,0 --samples 1e4 -o lobe.exr",
-    "bsdf-table relief.gwy --symmetry isotropic --tolerance 1 --resolution 16 -o table.exr"};
+    "bsdf-table relief.gwy --symmetry isotropic --tolerance 1 --resolution 16 -o table.exr",
+    "info table.exr"};
 
 // The first word of each line under "Subcommands:".
 std::set<std::string> commands_in_the_help(const std::string& help) {

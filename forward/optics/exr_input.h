@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+/// Inside of forward/optics and forward/bsdf_table.
+
+namespace mezzotint {
+
+/// An OpenEXR file whose header was found sound: its bytes, and the library's view of them. In the order in which they
+/// depend on each other.
+struct ExrInput {
+  std::vector<std::byte> bytes;
+  std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;
+  std::unique_ptr<OIIO::ImageInput> file;
+  OIIO::ImageSpec spec;
+};
+
+/// @throws FileError for a file that is larger than any direction map, is no EXR, or whose header is damaged
+///         (require_sound_exr_header); DeviceError where the library has no OpenEXR.
+[[nodiscard]] ExrInput open_exr(const std::filesystem::path& path);
+
+}  // namespace mezzotint
