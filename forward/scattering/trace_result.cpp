@@ -44,16 +44,21 @@ public:
     return splat_ == nullptr ? 0.0 : splat_total_ + sum_of(tally.total_energy) * per_ray_ - 1.0;
   }
 
+  // 1 less the share of the splat's light that is taken out. A splat without light has none to spread the excess by.
+  [[nodiscard]] double kept(const BatchTally& tally) const {
+    return splat_ == nullptr || !(splat_total_ > 0.0) ? 1.0 : 1.0 - excess(tally) / splat_total_;
+  }
+
   template <class Part>  // BatchTally → container of numbers
   void add_to(BatchStatistics& statistics, const Part& part) const {
     std::vector<double> values;
     for (const BatchTally& tally : state_.tallies) {
       const auto& traced = part(tally);
       values.resize(traced.size());
-      const double kept = 1.0 - (splat_ == nullptr ? 0.0 : excess(tally) / splat_total_);
+      const double dense_share = kept(tally);
       for (std::size_t k = 0; k < values.size(); ++k) {
         const double dense = splat_ == nullptr ? 0.0 : part(*splat_)[k] * per_facet_;
-        values[k] = traced[k] * per_ray_ + dense * kept;
+        values[k] = traced[k] * per_ray_ + dense * dense_share;
       }
       statistics.add(values);
     }
@@ -189,7 +194,9 @@ TraceResult summarise(const PathTracingOptions& options, const TraceState& state
 }
 
 Bsdf splat_result(const PathTracingOptions& options, const BatchTally& splat, double facets) {
-  const double total = sum_of(splat.total_energy);
+  const double found = sum_of(splat.total_energy);
+  // Facets so steep that each sends its light into another have no single reflection at all: all is cut off.
+  const double total = found > 0.0 ? found : 1.0;
   const std::vector<double> scale = map_scale(options.grid, total);
   const auto exact = [&](const DirectionMap& tally) {
     DirectionMap map(tally.size());
@@ -202,12 +209,13 @@ Bsdf splat_result(const PathTracingOptions& options, const BatchTally& splat, do
   const auto share = [&](Fate fate) {
     return Estimate{splat.total_energy[static_cast<std::size_t>(fate)] / total, 0.0};
   };
-  bsdf.energy = {share(Fate::Reflected), share(Fate::Transmitted), share(Fate::Absorbed), {}, {}};
+  bsdf.energy = {
+      share(Fate::Reflected), share(Fate::Transmitted), share(Fate::Absorbed), {}, {1.0 - found / total, 0.0}};
   bsdf.provenance = {{"model", "slopes"},
                      {"control_variate", "none"},
                      {"material", to_string(options.material)},
                      {"normals", "geometric"},
-                     {"unadjusted_energy", fmt::format("{:.8g}", total / facets)}};
+                     {"unadjusted_energy", fmt::format("{:.8g}", found / facets)}};
   return bsdf;
 }
 
