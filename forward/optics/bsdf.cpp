@@ -28,6 +28,8 @@ constexpr std::size_t longest_key = 200;  // OpenEXR's names have 255 characters
 
 std::string order_name(std::size_t order) { return "reflection.order_" + std::to_string(order + 1); }
 
+bool has_intervals(const Bsdf& bsdf) { return !bsdf.reflection.low_95.empty(); }
+
 // One list of what the file holds, for the writer and the reader.
 template <class B>  // Bsdf or const Bsdf
 auto channels_of(B& bsdf) {
@@ -40,6 +42,12 @@ auto channels_of(B& bsdf) {
                        entry("transmission.standard_error", bsdf.transmission.standard_error),
                        entry("transmission.half_a", bsdf.transmission.half_a),
                        entry("transmission.half_b", bsdf.transmission.half_b)};
+  if (has_intervals(bsdf)) {
+    channels.push_back(entry("reflection.low_95", bsdf.reflection.low_95));
+    channels.push_back(entry("reflection.high_95", bsdf.reflection.high_95));
+    channels.push_back(entry("transmission.low_95", bsdf.transmission.low_95));
+    channels.push_back(entry("transmission.high_95", bsdf.transmission.high_95));
+  }
   for (std::size_t k = 0; k < bsdf.reflection_orders.size(); ++k) {
     channels.push_back(entry(order_name(k), bsdf.reflection_orders[k].mean));
     channels.push_back(entry(order_name(k) + ".standard_error", bsdf.reflection_orders[k].standard_error));
@@ -130,6 +138,12 @@ std::size_t order_count(const OIIO::ImageSpec& spec) {
   return count;
 }
 
+// So that the list of channels names the intervals, where the file holds them.
+void expect_intervals(const OIIO::ImageSpec& spec, Bsdf& bsdf) {
+  const auto& names = spec.channelnames;
+  if (std::find(names.begin(), names.end(), "reflection.low_95") != names.end()) bsdf.reflection.low_95.resize(1);
+}
+
 void read_channels(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, const fs::path& path, Bsdf& bsdf) {
   const auto stride = static_cast<std::size_t>(spec.nchannels);
   for (const auto& [name, map] : channels_of(bsdf)) {
@@ -164,6 +178,7 @@ Bsdf read_exr(const fs::path& path) {
   bsdf.grid = {static_cast<std::size_t>(spec.width), static_cast<std::size_t>(spec.height)};
   read_attributes(spec, path, bsdf);
   bsdf.reflection_orders.resize(order_count(spec));
+  expect_intervals(spec, bsdf);
   std::vector<float> pixels(bsdf.grid.size() * static_cast<std::size_t>(spec.nchannels));
   if (!file->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data())) {
     throw FileError(path, "pixels", "cannot be read whole; the file is truncated or damaged: " + file->geterror());

@@ -22,6 +22,9 @@ void BatchTally::add(const BatchTally& other) {
   for (std::size_t map = 0; map < 2; ++map) {
     arrivals[map] += other.arrivals[map];
     arrived_weight[map] += other.arrived_weight[map];
+    add_map(squares[map], other.squares[map]);
+    add_map(negative[map], other.negative[map]);
+    largest_weight[map] = std::max(largest_weight[map], other.largest_weight[map]);
   }
   normal_fallbacks += other.normal_fallbacks;
   leaked += other.leaked;

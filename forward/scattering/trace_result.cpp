@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "forward/base/error.h"
+#include "forward/scattering/bin_interval.h"
 
 namespace mezzotint {
 
@@ -64,6 +65,26 @@ public:
     }
   }
 
+  // What the paths brought to a bin of a map; in shares of all light.
+  [[nodiscard]] BinHits hits(std::size_t map, std::size_t bin) const {
+    BinHits all;
+    const double per_path = per_ray_ / static_cast<double>(state_.tallies.size());
+    for (const BatchTally& tally : state_.tallies) {
+      all.sum += (map == 0 ? tally.reflected : tally.transmitted)[bin] * per_path;
+      all.squares += tally.squares[map][bin] * per_path * per_path;
+      all.negative += tally.negative[map][bin] * per_path;
+    }
+    return all;
+  }
+  // The largest that one path brought to any bin; a whole path where none came.
+  [[nodiscard]] double largest_weight(std::size_t map) const {
+    double largest = 0.0;
+    for (const BatchTally& tally : state_.tallies) largest = std::max(largest, tally.largest_weight[map]);
+    return (largest > 0.0 ? largest : 1.0) * per_ray_ / static_cast<double>(state_.tallies.size());
+  }
+  [[nodiscard]] bool corrects_a_splat() const { return splat_ != nullptr; }
+  [[nodiscard]] std::uint32_t batches() const { return static_cast<std::uint32_t>(state_.tallies.size()); }
+
   // What one path more would add to a bin of a map (0 reflection, 1 transmission), by the mean weight of all.
   [[nodiscard]] double one_arrival(std::size_t map, double bins) const {
     double weight = splat_ == nullptr ? 0.0 : splat_->arrived_weight[map];
@@ -102,6 +123,26 @@ MapEstimate estimate_map(const Shares& shares, std::size_t map, const std::vecto
     result.standard_error[k] = std::hypot(result.standard_error[k], one * scale[k]);
   }
   return result;
+}
+
+// Intervals: by Student's t where hits are enough, else by their number. What a splat holds is known but for the excess
+// that is taken out of it, which batches tell.
+void add_intervals(const Shares& shares, std::size_t map, const std::vector<double>& scale, MapEstimate& result) {
+  const double student = student_95(shares.batches() - 1), largest = shares.largest_weight(map);
+  result.low_95.resize(scale.size());
+  result.high_95.resize(scale.size());
+  for (std::size_t k = 0; k < scale.size(); ++k) {
+    const BinHits hits = shares.hits(map, k);
+    double below = student * result.standard_error[k], above = below;
+    if (hits.effective() < few_hits) {
+      const Interval few = few_hits_interval(hits, largest);
+      const double least = shares.corrects_a_splat() ? below : 0.0;
+      below = std::max(least, (hits.sum - few.low) * scale[k]);
+      above = std::max(least, (few.high - hits.sum) * scale[k]);
+    }
+    result.low_95[k] = std::max(0.0, result.mean[k] - below);
+    result.high_95[k] = result.mean[k] + above;
+  }
 }
 
 EnergyAudit audit(const MapEstimate& shares) {
@@ -185,6 +226,8 @@ TraceResult summarise(const PathTracingOptions& options, const TraceState& state
       estimate_map(shares, 0, scale, [](const BatchTally& t) -> const DirectionMap& { return t.reflected; });
   bsdf.transmission =
       estimate_map(shares, 1, scale, [](const BatchTally& t) -> const DirectionMap& { return t.transmitted; });
+  add_intervals(shares, 0, scale, bsdf.reflection);
+  add_intervals(shares, 1, scale, bsdf.transmission);
   for (std::uint32_t order = 0; order < options.bounce_orders; ++order) {
     bsdf.reflection_orders.push_back(estimate_map(
         shares, 0, scale, [order](const BatchTally& t) -> const DirectionMap& { return t.orders[order]; }));

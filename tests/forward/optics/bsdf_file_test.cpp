@@ -216,6 +216,25 @@ TEST(BsdfFile, IsNotWrittenForMapsThatDoNotFitOrWhereThereIsNoFolder) {
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
+TEST(BsdfFile, KeepsTheIntervals) {
+  const test::TemporaryFolder folder;
+  Bsdf bsdf = example({9, 6});
+  write_exr(bsdf, folder / "none.exr");
+  EXPECT_TRUE(read_exr(folder / "none.exr").reflection.low_95.empty());
+  bsdf.reflection.low_95 = wavy(54, 20.0);
+  bsdf.reflection.high_95 = wavy(54, 21.0);
+  bsdf.transmission.low_95 = wavy(54, 22.0);
+  bsdf.transmission.high_95 = wavy(54, 23.0);
+  write_exr(bsdf, folder / "intervals.exr");
+  const Bsdf again = read_exr(folder / "intervals.exr");
+  expect_floats_of(bsdf.reflection.low_95, again.reflection.low_95);
+  expect_floats_of(bsdf.reflection.high_95, again.reflection.high_95);
+  expect_floats_of(bsdf.transmission.low_95, again.transmission.low_95);
+  expect_floats_of(bsdf.transmission.high_95, again.transmission.high_95);
+  bsdf.transmission.high_95.clear();  // all or none
+  EXPECT_THROW(write_exr(bsdf, folder / "intervals.exr"), InvalidInput);
+}
+
 TEST(BsdfFile, KeepsTheOrdersOfInteraction) {
   const test::TemporaryFolder folder;
   Bsdf bsdf = example({9, 6});
