@@ -14,12 +14,12 @@ double lower_gamma(double a, double x) {
   const double front = std::exp(a * std::log(x) - x - std::lgamma(a));
   if (x < a + 1.0) {
     double term = 1.0 / a, sum = term;
-    for (double k = a + 1.0; term > 1e-16 * sum; k += 1.0) sum += term *= x / k;
+    for (int k = 1; term > 1e-16 * sum; ++k) sum += term *= x / (a + k);
     return front * sum;
   }
   constexpr double tiny = 1e-300;
   double b = x + 1.0 - a, c = 1.0 / tiny, d = 1.0 / b, fraction = d;
-  for (double k = 1.0; k < 1e4; k += 1.0) {
+  for (int k = 1; k < 10000; ++k) {
     const double an = -k * (k - a);
     b += 2.0;
     d = 1.0 / std::max(tiny, an * d + b);
