@@ -8,7 +8,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "forward/ladder/gaussian_slopes.h"
+#include "forward/optics/bsdf_warnings.h"
 #include "forward/optics/microfacet.h"
+#include "forward/surface/relief_warnings.h"
 #include "forward/surface/slope_covariance.h"
 
 namespace mezzotint {
@@ -44,8 +47,11 @@ std::uint64_t pilot_paths(const HeightField& field) {
 }
 
 Forecast forecast_slopes(const LadderOptions& options, std::uint64_t paths, const MapEstimate& pilot,
-                         const DirectionMap& slopes) {
-  const MapDifference difference = relative_l2(options.grid, pilot, slopes);
+                         const Bsdf& slopes) {
+  if (!(slopes.energy.reflected.value > 0.0)) {
+    return {Rung::Slopes, 1.0, "no facet sends light straight out: all of it meets the surface again"};
+  }
+  const MapDifference difference = relative_l2(options.grid, pilot, slopes.reflection.mean);
   const double error = difference.corrected.value + bound * difference.corrected.standard_error;
   return {
       Rung::Slopes, error,
@@ -63,7 +69,7 @@ void explain(const Choice& choice, Bsdf& bsdf) {
   bsdf.provenance["model"] = std::string(name_of(choice.rung));
   bsdf.provenance["choice"] = fmt::format("{} was chosen. {}", name_of(choice.rung), fmt::join(words, "; "));
   bsdf.provenance["predicted_error"] = fmt::format("{:.4g}", choice.forecasts.back().error);
-  if (!choice.warnings.empty()) bsdf.provenance["warnings"] = fmt::format("{}", fmt::join(choice.warnings, "; "));
+  add_warnings(bsdf, choice.warnings);
 }
 
 }  // namespace
@@ -120,6 +126,9 @@ Bsdf bsdf_from_moments(const HeightField& field, const LadderOptions& options) {
                      {"lobe", fmt::format("Beckmann {:.6g} × {:.6g} at {:.4g}°, height-correlated Smith, single "
                                           "reflection; what it does not reflect is listed as cut off",
                                           lobe.alpha_x, lobe.alpha_y, lobe.rotation.degrees())}};
+  add_warnings(bsdf, relief_warnings(field));
+  add_warnings(bsdf, gaussian_slopes_warnings(field));
+  add_warnings(bsdf, map_warnings(bsdf));
   return bsdf;
 }
 
@@ -148,7 +157,7 @@ Bsdf simulate_auto(const HeightField& field, PathTracer& tracer, const LadderOpt
     PathTracingOptions pilot = tracing;
     pilot.samples = pilot_paths(field);
     const Bsdf first = tracer.trace(pilot);
-    const Forecast forecast = forecast_slopes(options, pilot.samples, first.reflection, slopes.reflection.mean);
+    const Forecast forecast = forecast_slopes(options, pilot.samples, first.reflection, slopes);
     choice.forecasts.push_back(forecast);
     if (forecast.error <= options.tolerance) return finish(std::move(slopes));
   }
