@@ -6,6 +6,7 @@
 #include "experiments/version.h"
 #include "forward/base/quantity.h"
 #include "forward/ladder/ladder.h"
+#include "forward/optics/bsdf_warnings.h"
 #include "forward/scattering/path_tracing.h"
 #include "measurement/formats/surface_file.h"
 
@@ -74,13 +75,22 @@ LadderOptions ladder_options(const BsdfArguments& arguments, const PathTracingOp
           .seed = tracing.seed};
 }
 
-Bsdf by_model(const BsdfArguments& arguments, const HeightField& relief, const PathTracingOptions& tracing,
-              const Progress& progress) {
-  if (arguments.model == "moments") return bsdf_from_moments(relief, ladder_options(arguments, tracing));
-  PathTracer tracer(relief);
+Bsdf by_rays(const BsdfArguments& arguments, const HeightField& relief, PathTracer& tracer,
+             const PathTracingOptions& tracing, const Progress& progress) {
   if (arguments.model == "slopes") return tracer.splat(tracing);
   if (arguments.model == "auto") return simulate_auto(relief, tracer, ladder_options(arguments, tracing), progress);
   return tracer.trace(tracing, progress);
+}
+
+Bsdf by_model(const BsdfArguments& arguments, const HeightField& relief, const PathTracingOptions& tracing,
+              const Progress& progress) {
+  const LadderOptions ladder = ladder_options(arguments, tracing);
+  if (arguments.model == "moments" && relief.missing_count() > 0) return bsdf_from_moments(relief, ladder);
+  PathTracer tracer(relief);
+  Bsdf bsdf = arguments.model == "moments" ? bsdf_from_moments(relief, ladder)
+                                           : by_rays(arguments, relief, tracer, tracing, progress);
+  add_warnings(bsdf, geometric_optics_warnings(tracer.facts(), ladder));
+  return bsdf;
 }
 
 Bsdf compute(const BsdfArguments& arguments, const CommandContext& context) {
@@ -106,10 +116,10 @@ std::string entry_of(const Bsdf& bsdf, const std::string& key) {
   return found == bsdf.provenance.end() ? "" : found->second;
 }
 
-// Why `auto` chose what it chose, and what it warns of.
+// Why `auto` chose what it chose.
 std::string words_of(const Bsdf& bsdf) {
-  const std::string choice = entry_of(bsdf, "choice"), warnings = entry_of(bsdf, "warnings");
-  return (choice.empty() ? "" : "\n" + choice) + (warnings.empty() ? "" : "\nwarning: " + warnings);
+  const std::string choice = entry_of(bsdf, "choice");
+  return choice.empty() ? "" : "\n" + choice;
 }
 
 void add_arguments(CLI::App& app, BsdfArguments& arguments) {
@@ -128,7 +138,7 @@ void add_arguments(CLI::App& app, BsdfArguments& arguments) {
          "or auto: the cheapest that meets the tolerance")
       ->check(CLI::IsMember({"auto", "paths", "single", "slopes", "moments"}));
   app.add_option("--wavelength", arguments.wavelength_nm,
-                 "Of the light in nm, for auto's verdict on geometric optics (default 550)")
+                 "Of the light in nm, for the verdict on geometric optics (default 550)")
       ->check(in_range(200.0, 20000.0));
   app.add_option("--resolution", arguments.resolution, "Bins a side of the direction map (default 64)")
       ->check(CLI::Range(8, 1024));
@@ -176,10 +186,11 @@ Command add_bsdf(CLI::App& program) {
                  {"cut_off", Quantity{bsdf.energy.cut_off.value, "1", bsdf.energy.cut_off.standard_error}},
                  {"model", bsdf.provenance.at("model")},
                  {"choice", entry_of(bsdf, "choice")},
-                 {"warnings", entry_of(bsdf, "warnings")},
+                 {"warnings", warnings_of(bsdf.provenance)},
                  {"relative_standard_error", error}},
                 fmt::format("wrote {}: albedo {:.5f} ± {:.2g}, relative standard error of the map {:.2g}{}",
                             arguments->output, albedo.value, albedo.standard_error, error, words_of(bsdf)));
+            context.warn(warnings_of(bsdf.provenance));
             const bool fell_short = has_tolerance(*arguments) && error > tolerance_of(*arguments);
             return fell_short ? ExitStatus::ToleranceMissed : ExitStatus::Done;
           }};
