@@ -22,6 +22,7 @@ namespace {
 constexpr std::uint64_t least_pilot = std::uint64_t{1} << 10, most_pilot = std::uint64_t{1} << 14;
 // One side of a 95 % interval, as the pilot's own error is known from 8 batches (Student's t, 7 degrees of freedom).
 constexpr double bound = 1.9;
+constexpr double harmless_lost_light = 0.05;
 
 PathTracingOptions tracing_options(const LadderOptions& options) {
   PathTracingOptions tracing;
@@ -31,6 +32,21 @@ PathTracingOptions tracing_options(const LadderOptions& options) {
   tracing.samples = options.most_samples;
   tracing.seed = options.seed;
   return tracing;
+}
+
+// What Smith's term takes away for good, where the surface scatters it again. A lobe of an α below 0.2 hardly loses
+// any, and is too narrow for these bins.
+std::vector<std::string> lost_light_warnings(const BeckmannLobe& lobe, const DirectionAngles& incidence) {
+  if (std::min(lobe.alpha_x, lobe.alpha_y) < 0.2) return {};
+  const DirectionGrid coarse{16, 16};
+  const DirectionMap map = reflection_map(lobe, Mirror{}, incidence, coarse);
+  const auto areas = projected_solid_angles(coarse);
+  const double lost = 1.0 - std::inner_product(map.begin(), map.end(), areas.begin(), 0.0);
+  if (lost <= harmless_lost_light) return {};
+  return {
+      fmt::format("masking and shadowing take {:.2g} % of the light away for good, which the surface scatters again: "
+                  "the lobe is that of single reflections; --model paths follows the others",
+                  100.0 * lost)};
 }
 
 // Light that comes in at a slope of cotθ, and leaves no facet at a lower one, meets nothing twice, if no facet is
@@ -128,6 +144,7 @@ Bsdf bsdf_from_moments(const HeightField& field, const LadderOptions& options) {
                                           lobe.alpha_x, lobe.alpha_y, lobe.rotation.degrees())}};
   add_warnings(bsdf, relief_warnings(field));
   add_warnings(bsdf, gaussian_slopes_warnings(field));
+  add_warnings(bsdf, lost_light_warnings(lobe, options.incidence));
   add_warnings(bsdf, map_warnings(bsdf));
   return bsdf;
 }

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -18,14 +19,34 @@ struct FailureRow {
   std::string told;      ///< what the user reads: the sentence itself where there is one
 };
 
-/// Appends the row as a line of JSON to the file that the environment variable MEZZOTINT_FAILURES names; does nothing
-/// where it names none.
-inline void record(const FailureRow& row) {
+/// A curve of the page's figure.
+struct FailureCurve {
+  std::string panel;
+  std::string series;
+  std::vector<double> theta_deg;
+  std::vector<double> values;
+};
+
+namespace detail {
+inline void append_line(const nlohmann::ordered_json& line) {
   const char* path = std::getenv("MEZZOTINT_FAILURES");
-  if (path == nullptr || *path == '\0') return;
-  const nlohmann::ordered_json line = {{"theme", row.theme},     {"method", row.method},   {"taken_to", row.taken_to},
-                                       {"happens", row.happens}, {"noticed", row.noticed}, {"told", row.told}};
-  std::ofstream(path, std::ios::app) << line.dump() << '\n';
+  if (path != nullptr && *path != '\0') std::ofstream(path, std::ios::app) << line.dump() << '\n';
+}
+}  // namespace detail
+
+/// Appends a row, or a curve, as a line of JSON to the file that the environment variable MEZZOTINT_FAILURES names;
+/// does nothing where it names none.
+inline void record(const FailureRow& row) {
+  detail::append_line({{"theme", row.theme},
+                       {"method", row.method},
+                       {"taken_to", row.taken_to},
+                       {"happens", row.happens},
+                       {"noticed", row.noticed},
+                       {"told", row.told}});
+}
+inline void record(const FailureCurve& curve) {
+  detail::append_line(
+      {{"panel", curve.panel}, {"series", curve.series}, {"theta_deg", curve.theta_deg}, {"values", curve.values}});
 }
 
 }  // namespace mezzotint::test

@@ -43,10 +43,9 @@ TEST(InterpolatedNormals, AreThoseOfAnotherSurfaceThanTheFacets) {
   EXPECT_GT(off, 0.02);
   EXPECT_EQ(smooth.provenance.at("normals"), "interpolated");
   test::record(
-      {theme, "`--normals interpolated`", "features of eight samples, s = 0.5 at 60°",
+      {theme, "`--normals interpolated`", "features of a few samples, s = 0.5 at 60°",
        fmt::format("The map converges to another one, {} from that of the facets, however many paths.", percent(off)),
-       "Not a fault that a run can see: sample the relief more finely and compare. `mezzotint chart` draws the "
-       "floor.",
+       "Not a fault that a run can see: sample the relief more finely and compare. `mezzotint chart` draws the floor.",
        "provenance `normals`: interpolated"});
 }
 

@@ -36,9 +36,9 @@ TEST(LatticePlacement, AliasesWithAPeriodicPattern) {
   EXPECT_GT(stated(lattice), 0.5 * error(lattice));
   test::record(
       {theme, "`Placement::Lattice`", "sin·sin with 16 waves a side, 256 × 256 points a batch",
-       fmt::format("All waves are met at the same 256 places: the error is {}, where strata give {} and random "
-                   "points {}.",
-                   percent(error(lattice)), percent(error(strata)), percent(error(random))),
+       fmt::format(
+           "All waves are met at the same 256 places: the error is {}, where strata give {} and random points {}.",
+           percent(error(lattice)), percent(error(strata)), percent(error(random))),
        fmt::format("Batches have shifts of their own, so the standard error tells ({} stated).",
                    percent(stated(lattice))),
        "the relative standard error of the map; the program itself places samples in strata"});
@@ -49,11 +49,10 @@ TEST(SampleBudget, IsRoundedUpToWholeStrata) {
   options.samples = 1000;
   const Bsdf bsdf = trace_bsdf(test::random_relief(32, 0.2), options);
   EXPECT_EQ(bsdf.provenance.at("samples"), "1024");
-  test::record(
-      {theme, "strata along a Morton curve", "1000 samples",
-       "Strata are powers of two; fewer samples would leave a part of the patch dark. 1000 become 1024 (8 batches of "
-       "128), at most they double.",
-       "Always rounded up.", "provenance `samples`: 1024"});
+  test::record({theme, "strata along a Morton curve", "1000 samples",
+                "Strata are powers of two; fewer samples would leave a part of the patch dark. 1000 become 1024 (8 "
+                "batches of 128), at most they double.",
+                "Always rounded up.", "provenance `samples`: 1024"});
 }
 
 }  // namespace

@@ -49,7 +49,16 @@ std::string refusal(const Call& call) {
   return "";
 }
 
-inline std::string percent(double share) { return fmt::format("{:.2g} %", 100.0 * share); }
+inline std::string percent(double share) {
+  return share < 0.995 ? fmt::format("{:.2g} %", 100.0 * share) : fmt::format("{:.0f} %", 100.0 * share);
+}
+
+/// A figure that is rounding, or luck, by a bound alone: the next power of ten, so that another vector unit gives the
+/// same words.
+inline std::string below(double figure) {
+  if (figure == 0.0) return "nothing";
+  return fmt::format("less than 1e{:.0f}", std::ceil(std::log10(figure)));
+}
 
 /// relative_l2 without noise.
 inline double difference(const Bsdf& a, const Bsdf& b) {
