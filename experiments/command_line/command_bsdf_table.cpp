@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <map>
 
 #include <fmt/format.h>
@@ -132,7 +133,8 @@ Result compute(const BsdfTableArguments& arguments, const CommandContext& contex
   ProgressEvent latest{"bsdf table", 0.0, ""};
   const Progress overall = [&](const ProgressEvent& event) {
     latest = event;
-    report(context.progress, event.stage, event.fraction, event.note);
+    latest.fraction = std::min(event.fraction, 0.99);  // the symmetry is still to be looked at
+    report(context.progress, latest.stage, latest.fraction, latest.note);
   };
   const auto compute_one = [&](const DirectionAngles& to_light) {
     const std::string where = fmt::format("{:.1f}°, {:.1f}°", to_light.theta.degrees(), to_light.phi.degrees());
@@ -153,6 +155,7 @@ Result compute(const BsdfTableArguments& arguments, const CommandContext& contex
   };
   result.warnings = relief_warnings(relief);
   look_at_symmetry(arguments, ask, result);
+  report(context.progress, latest.stage, 1.0);
   built.table.provenance = {{"program", std::string("mezzotint ") + program_version},
                             {"source", std::filesystem::path(arguments.input).filename().string()},
                             {"material", to_string(material)},

@@ -101,10 +101,10 @@ double rms_gradient(const PeriodicTile& tile) {
 bool use_splat(const PathTracingOptions& options, const PeriodicTile& tile, double gradient) {
   if (options.control_variate == ControlVariate::Off) return false;
   const bool possible = splat_is_possible(options, tile);
-  require(
-      possible || options.control_variate == ControlVariate::Automatic,
-      "the control variate needs geometric normals, a periodic field, one direction of the light, the flux estimator, "
-      "no absorption and the height-field tracer");
+  require(possible || options.control_variate == ControlVariate::Automatic,
+          "the splat of all facets (the model slopes, and the control variate) needs a periodic field, geometric "
+          "normals, one "
+          "direction of the light, the flux estimator, no absorption and the height-field tracer; use the model paths");
   const double steepness = gradient * std::tan(options.incidence.theta.radians());
   return possible && (options.control_variate == ControlVariate::On || steepness < control_variate_limit);
 }

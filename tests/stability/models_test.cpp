@@ -120,6 +120,15 @@ TEST(Auto, ForecastsWhatThePilotCanSee) {
        "provenance `choice` and `predicted_error`"});
 }
 
+TEST(Slopes, AreRefusedWhereAPatchEnds) {
+  PathTracer patch(crop(test::random_relief(64, 0.2), 0, 0, 40, 40));
+  const std::string told = test::refusal([&] { (void)patch.splat(light_at(30.0)); });
+  EXPECT_NE(told.find("needs a periodic field"), std::string::npos);
+  test::record({theme, "`slopes`", "a patch that is no period of a pattern",
+                "Nothing is computed: facets of mirrored copies would shine as if they had been measured.",
+                "The continuation of the height field; `auto` traces such patches.", told});
+}
+
 TEST(Rays, AreNoModelOfReliefBelowTheWavelength) {
   HeightField relief = test::random_relief(64, 0.03);
   for (float& z : relief.heights_um()) z *= 0.1F;

@@ -73,7 +73,7 @@ TEST(AssertedSymmetry, IsFoundOutByOneMoreDirection) {
                    apart(grating), apart(oblong), apart(skewed), apart(ridges), apart(waves), grating.reciprocity,
                    ridges.reciprocity),
        "A direction of the light that the symmetry makes unnecessary is computed and compared; above three times the "
-       "tolerance, and what the width of bins can do, it warns.",
+       "tolerance (or 0.5), and what the width of bins can do, it warns.",
        "the sample does not have the symmetry \"isotropic\" that was asserted: light from beyond the computed azimuths "
        "gives a lobe that differs by … (relative L2) from the table's; use another --symmetry or --axis"});
 }
