@@ -138,7 +138,7 @@ Result compute(const BsdfTableArguments& arguments, const CommandContext& contex
   };
   const auto compute_one = [&](const DirectionAngles& to_light) {
     const std::string where = fmt::format("{:.1f}°, {:.1f}°", to_light.theta.degrees(), to_light.phi.degrees());
-    const Bsdf bsdf = rounded(directions.compute(to_light, [&](const ProgressEvent& event) {
+    Bsdf bsdf = rounded(directions.compute(to_light, [&](const ProgressEvent& event) {
       report(context.progress, latest.stage, latest.fraction, where + ": " + event.note);
     }));
     if (store) store->keep(bsdf);
