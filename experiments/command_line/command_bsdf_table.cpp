@@ -112,6 +112,22 @@ void look_at_symmetry(const BsdfTableArguments& arguments, const ComputeBsdf& as
       arguments.symmetry, check.difference));
 }
 
+Provenance provenance_of(const BsdfTableArguments& arguments, const Result& result, const std::string& material,
+                         std::uint64_t seed) {
+  const BsdfTableReport& report = result.built.report;
+  Provenance entries = {{"program", std::string("mezzotint ") + program_version},
+                        {"source", std::filesystem::path(arguments.input).filename().string()},
+                        {"material", material},
+                        {"model", arguments.model},
+                        {"noise", fmt::format("{}", noise_of(arguments))},
+                        {"tolerance", fmt::format("{}", arguments.tolerance)},
+                        {"largest_difference", fmt::format("{:.4g}", report.largest_difference)},
+                        {"tolerance_met", report.met ? "yes" : "no"},
+                        {"seed", std::to_string(seed)}};
+  if (!result.warnings.empty()) entries["warnings"] = fmt::format("{}", fmt::join(result.warnings, "\n"));
+  return entries;
+}
+
 Result compute(const BsdfTableArguments& arguments, const CommandContext& context) {
   require(std::filesystem::path(arguments.output).extension() == ".exr",
           arguments.output + ": a BSDF table is written as .exr");
@@ -156,17 +172,7 @@ Result compute(const BsdfTableArguments& arguments, const CommandContext& contex
   result.warnings = relief_warnings(relief);
   look_at_symmetry(arguments, ask, result);
   report(context.progress, latest.stage, 1.0);
-  built.table.provenance = {{"program", std::string("mezzotint ") + program_version},
-                            {"source", std::filesystem::path(arguments.input).filename().string()},
-                            {"material", to_string(material)},
-                            {"model", arguments.model},
-                            {"noise", fmt::format("{}", noise_of(arguments))},
-                            {"tolerance", fmt::format("{}", arguments.tolerance)},
-                            {"largest_difference", fmt::format("{:.4g}", built.report.largest_difference)},
-                            {"tolerance_met", built.report.met ? "yes" : "no"},
-                            {"seed", std::to_string(seed)}};
-  if (!result.warnings.empty())
-    built.table.provenance["warnings"] = fmt::format("{}", fmt::join(result.warnings, "\n"));
+  built.table.provenance = provenance_of(arguments, result, to_string(material), seed);
   return result;
 }
 
