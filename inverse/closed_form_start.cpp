@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "forward/pattern/sparse_noise.h"
 #include "forward/process/printed_relief.h"
 
 namespace mezzotint {

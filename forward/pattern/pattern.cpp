@@ -10,6 +10,8 @@
 
 #include "forward/base/error.h"
 #include "forward/base/random.h"
+#include "forward/pattern/noise_scatter.h"
+#include "forward/pattern/sparse_noise.h"
 
 namespace mezzotint {
 
@@ -57,21 +59,6 @@ struct OwnAxes {
   }
 };
 
-NoiseBounds bounds_of(const Noise& noise, const Grid& grid, const OwnAxes& axes) {
-  const double width = static_cast<double>(grid.columns - 1) * grid.pitch_x.um();
-  const double depth = static_cast<double>(grid.rows - 1) * grid.pitch_y.um();
-  NoiseBounds bounds{HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL};
-  for (const auto& [x, y] : {std::array{0.0, 0.0}, {width, 0.0}, {0.0, depth}, {width, depth}}) {
-    const auto [u, v] = axes(x, y);
-    const double p = u / noise.scale.um(), q = v / (noise.scale.um() * noise.stretch);
-    bounds = {std::min(bounds.x_low, p), std::max(bounds.x_high, p), std::min(bounds.y_low, q),
-              std::max(bounds.y_high, q)};
-  }
-  // A hair more, so that rounding inside of the loop cannot step out.
-  const double hair = 1e-9 * (1.0 + std::abs(bounds.x_high) + std::abs(bounds.y_high));
-  return {bounds.x_low - hair, bounds.x_high + hair, bounds.y_low - hair, bounds.y_high + hair};
-}
-
 template <typename HeightOf>
 HeightField fill_grid(const Grid& grid, const OwnAxes& axes, const HeightOf& height_um) {
   HeightField field(grid, Continuation::Mirrored);
@@ -85,21 +72,26 @@ HeightField fill_grid(const Grid& grid, const OwnAxes& axes, const HeightOf& hei
   return field;
 }
 
-HeightField draw(const Noise& noise, const Grid& grid, const OwnAxes& axes) {
-  const NoisePlane plane(noise.seed, noise.hash, 0.0, bounds_of(noise, grid, axes));
-  const double per_u = 1.0 / noise.scale.um(), per_v = per_u / noise.stretch, height = noise.height.um();
-  return fill_grid(
-      grid, axes, [&](double u, double v) { return height * std::clamp(0.5 + plane(u * per_u, v * per_v), 0.0, 1.0); });
+HeightField draw(const Noise& noise, const Grid& grid, const Position& origin) {
+  const PatternMap plane{.u0 = origin.x.um(), .v0 = origin.y.um()};
+  const PatternMap map = in_units(turned(plane, noise.direction), noise.scale.um(), noise.scale.um() * noise.stretch);
+  HeightField field(grid, Continuation::Mirrored);
+  add_sparse_noise(field.heights_um(), grid, map, NoiseLattice(noise.seed, noise.hash), 0.0, 1.0);
+  const double height = noise.height.um();
+  for (float& z : field.heights_um()) z = static_cast<float>(height * std::clamp(0.5 + z, 0.0, 1.0));
+  return field;
 }
 
-HeightField draw(const Sinusoid& sinusoid, const Grid& grid, const OwnAxes& axes) {
+HeightField draw(const Sinusoid& sinusoid, const Grid& grid, const Position& origin) {
+  const OwnAxes axes(sinusoid.direction, origin);
   const double k_u = 2.0 * pi / sinusoid.wavelength_u.um(), k_v = 2.0 * pi / sinusoid.wavelength_v.um();
   const double height = sinusoid.height.um();
   return fill_grid(grid, axes,
                    [=](double u, double v) { return height * (0.5 * std::sin(k_u * u) * std::sin(k_v * v) + 0.5); });
 }
 
-HeightField draw(const Ridges& ridges, const Grid& grid, const OwnAxes& axes) {
+HeightField draw(const Ridges& ridges, const Grid& grid, const Position& origin) {
+  const OwnAxes axes(ridges.direction, origin);
   const double per_u = 1.0 / ridges.wavelength.um(), height = ridges.height.um(), skew = ridges.skew;
   return fill_grid(grid, axes, [=](double u, double) {
     const double phase = u * per_u - std::floor(u * per_u);
@@ -153,8 +145,7 @@ void require_valid(const Pattern& pattern) {
 HeightField synthesize(const Pattern& pattern, const Grid& grid, const Position& origin) {
   require_valid(pattern);
   require_valid_grid(grid);
-  const OwnAxes axes(direction_of(pattern), origin);
-  return std::visit([&](const auto& kind) { return draw(kind, grid, axes); }, pattern);
+  return std::visit([&](const auto& kind) { return draw(kind, grid, origin); }, pattern);
 }
 
 SlopeCovariance closed_form_slope_covariance(const Pattern& pattern) {

@@ -5,7 +5,7 @@
 #include <variant>
 
 #include "forward/base/units.h"
-#include "forward/pattern/sparse_noise.h"
+#include "forward/pattern/noise_lattice.h"
 #include "forward/surface/height_field.h"
 #include "forward/surface/slope_covariance.h"
 

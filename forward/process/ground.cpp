@@ -3,10 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include <tbb/parallel_for.h>
-
 #include "forward/base/error.h"
 #include "forward/base/random.h"
+#include "forward/pattern/noise_scatter.h"
 #include "forward/pattern/sparse_noise.h"
 #include "forward/process/printed_relief.h"
 
@@ -30,18 +29,9 @@ std::uint64_t octave_seed(std::uint64_t seed, const std::vector<GroundOctave>& o
 
 // Missing samples are NaN and stay it.
 void add_octave(HeightField& relief, double amplitude_um, Length scale, std::uint64_t seed) {
-  const double step_x = relief.grid().pitch_x / scale;
-  const double step_y = relief.grid().pitch_y / scale;
-  const NoiseBounds bounds{0.0, static_cast<double>(relief.columns()) * step_x, 0.0,
-                           static_cast<double>(relief.rows()) * step_y};
-  const NoisePlane noise(seed, CellHash::Integer, plane_of_mean_roughness, bounds);
-  tbb::parallel_for(std::size_t{0}, relief.rows(), [&](std::size_t row) {
-    const double y = static_cast<double>(row) * step_y;
-    for (std::size_t column = 0; column < relief.columns(); ++column) {
-      const double x = static_cast<double>(column) * step_x;
-      relief.at(column, row) += static_cast<float>(amplitude_um * noise(x, y));
-    }
-  });
+  const PatternMap map = in_units({}, scale.um(), scale.um());
+  add_sparse_noise(relief.heights_um(), relief.grid(), map, NoiseLattice(seed, CellHash::Integer),
+                   plane_of_mean_roughness, amplitude_um);
 }
 
 }  // namespace
