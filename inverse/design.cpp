@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "forward/base/error.h"
+#include "forward/pattern/octave_sum.h"
 #include "forward/pattern/pattern_parameters.h"
 #include "inverse/closed_form_start.h"
 
@@ -28,6 +29,8 @@ const PatternParameter& table_entry(const Pattern& pattern, const FreeParameter&
   const auto found = std::ranges::find(table, parameter.name, &PatternParameter::name);
   require(found != table.end(),
           fmt::format("a pattern of kind \"{}\" has no parameter \"{}\"", kind_name(pattern), parameter.name));
+  require(!found->whole,
+          fmt::format("{} is a whole number; a search cannot change it, so give it a value", parameter.name));
   require(parameter.low >= found->lowest && parameter.high <= found->highest,
           fmt::format("{}: the bounds must lie in [{}, {}]", parameter.name, found->lowest, found->highest));
   return *found;
@@ -47,12 +50,17 @@ Pattern with_values(Pattern pattern, const std::vector<Variable>& variables, con
   return pattern;
 }
 
+template <typename Kind>
+Length shortest(const Kind& kind) {
+  if constexpr (requires { octave_sum(kind); }) return kind.scale / octave_sum(kind).octaves.back().frequency;
+  return Length::from_um(HUGE_VAL);  // a composition, which is not searched
+}
+Length shortest(const LineIntegralConvolution& lines) { return lines.scale; }
+Length shortest(const Sinusoid& sinusoid) { return std::min(sinusoid.wavelength_u, sinusoid.wavelength_v); }
+Length shortest(const Ridges& ridges) { return ridges.wavelength; }
+
 Length shortest_length(const Pattern& pattern) {
-  if (const auto* noise = std::get_if<Noise>(&pattern)) return noise->scale;
-  if (const auto* sinusoid = std::get_if<Sinusoid>(&pattern)) {
-    return std::min(sinusoid->wavelength_u, sinusoid->wavelength_v);
-  }
-  return std::get<Ridges>(pattern).wavelength;
+  return std::visit([](const auto& kind) { return shortest(kind); }, pattern);
 }
 
 void warn_of_pixels(const DesignProblem& problem, Design& design) {
@@ -145,6 +153,9 @@ std::vector<std::uint64_t> fresh_seeds(const DesignProblem& problem) {
 }
 
 std::vector<Variable> search_variables(const DesignProblem& problem) {
+  require(parts_of(problem.pattern) == nullptr,
+          fmt::format("a composed pattern (\"{}\") cannot be searched yet; search one of its parts",
+                      kind_name(problem.pattern)));
   const Pattern start = closed_form_start(problem.pattern, problem.target, problem.printer, problem.patch.wavelength);
   std::vector<Variable> variables;
   for (const auto& parameter : problem.free) {

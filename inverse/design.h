@@ -61,7 +61,8 @@ struct Design {
 ///          `search_draws` printed patches: pattern → gray → light → cure height → ground, with common random
 ///          numbers and continuous gray levels; the best point is evaluated again on `fresh_draws` other draws
 ///          with the printer's gray levels.
-/// @throws InvalidInput for an impossible problem (unknown parameter, bounds outside of its range).
+/// @throws InvalidInput for an impossible problem (unknown or whole parameter, bounds outside of its range, a composed
+///         pattern: nothing of it can be searched yet).
 [[nodiscard]] Design find_design(const DesignProblem& problem, const Progress& progress = {});
 
 /// The problem's variables with their starts: explicit ones, closed-form ones cut to the bounds.

@@ -14,10 +14,6 @@ namespace {
 
 double square(double value) { return value * value; }
 
-Length height_of(const Pattern& pattern) {
-  return std::visit([](const auto& kind) { return kind.height; }, pattern);
-}
-
 Grid relief_grid(const PrinterProfile& printer, const PatchOptions& patch) {
   const Length pitch = printer.pixel_pitch / static_cast<double>(patch.subsamples);
   return {patch.pixels * patch.subsamples, patch.pixels * patch.subsamples, pitch, pitch};

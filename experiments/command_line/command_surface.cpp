@@ -164,17 +164,23 @@ Command add_synthesize(CLI::App& program) {
   app->add_option("--set", arguments->settings, "Change a setting: --set pattern.scale_um=80")->allow_extra_args(false);
   return {app, [arguments](const CommandContext& context) {
             PatternFile file = read_pattern_file(arguments->input, arguments->settings);
-            auto* noise = std::get_if<Noise>(&file.pattern);
-            if (noise != nullptr && context.common.seed >= 0) {
-              noise->seed = static_cast<std::uint64_t>(context.common.seed);
+            if (context.common.seed >= 0) {
+              file.pattern = draw_instance(file.pattern, static_cast<std::uint64_t>(context.common.seed)).pattern;
             }
-            const SurfaceFile surface{synthesize(file.pattern, file.grid),
+            const SurfaceFile surface{synthesize(file.pattern, file.grid, {}, file.continuation),
                                       "pattern",
                                       std::string(kind_name(file.pattern)),
                                       {{"pattern", pattern_file_text(file, "synthesized")}},
                                       ""};
             write_surface(surface, arguments->output);
-            context.print(written(arguments->output), "wrote " + arguments->output);
+            Json json = written(arguments->output);
+            std::string text = "wrote " + arguments->output;
+            if (file.continuation == Continuation::Periodic) {
+              const double change = periodic_change(file.pattern, file.grid);
+              json["periodic_change"] = Quantity{change, "1", {}};
+              text += fmt::format("\nperiodic: the pattern was changed by {:.2g} % to fit", 100.0 * change);
+            }
+            context.print(json, text);
             return ExitStatus::Done;
           }};
 }

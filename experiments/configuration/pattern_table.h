@@ -20,15 +20,16 @@ struct PatternSpecification {
 /// A search draws the seeds of its patterns itself (`[search] seed`); a pattern to synthesize has one of its own.
 enum class PatternUse { Search, Synthesis };
 
-/// Reads a `[pattern]` table. Where the table or its kind is left out, stretched noise is taken, and `reason`
-/// says why; a parameter that is left out of an experiment keeps its default and is not free, unless the
-/// whole table is left out: then all that matter are.
+/// Reads a `[pattern]` table, with the parts of a composition, which a search refuses. Where the table or its kind is
+/// left out, stretched noise is taken, and `reason` says why; a parameter that is left out of an experiment keeps its
+/// default and is not free, unless the whole table is left out: then all that matter are.
 [[nodiscard]] PatternSpecification read_pattern(TomlTable table, bool table_is_there, PatternUse use);
 
 /// A pattern and the grid to evaluate it on: the file of `mezzotint synthesize`.
 struct PatternFile {
   Pattern pattern;
   Grid grid;
+  Continuation continuation = Continuation::Mirrored;
 };
 /// @throws ConfigurationError; free parameters are refused, there is nothing to search.
 [[nodiscard]] PatternFile read_pattern_file(const std::filesystem::path& path,

@@ -40,9 +40,15 @@ Json pattern_to_json(const Pattern& pattern) {
   for (const auto& parameter : pattern_parameters(pattern)) {
     json[std::string(parameter.name)] = get_parameter(pattern, parameter.name);
   }
-  if (const auto* noise = std::get_if<Noise>(&pattern)) {
-    json["seed"] = noise->seed;
-    json["hash"] = noise->hash == CellHash::Slides ? "slides" : "integer";
+  if (const auto random = randomness(pattern)) {
+    json["seed"] = random->seed;
+    json["hash"] = random->hash == CellHash::Slides ? "slides" : "integer";
+  }
+  if (const auto* lines = std::get_if<LineIntegralConvolution>(&pattern)) {
+    json["singularities"] = Json::array();
+    for (const Singularity& point : lines->singularities) {
+      json["singularities"].push_back({point.place.x.um(), point.place.y.um(), point.index});
+    }
   }
   return json;
 }
@@ -51,9 +57,13 @@ Pattern pattern_from_json(const Json& json) {
   for (const auto& parameter : pattern_parameters(pattern)) {
     set_parameter(pattern, parameter.name, json.at(std::string(parameter.name)));
   }
-  if (auto* noise = std::get_if<Noise>(&pattern)) {
-    noise->seed = json.at("seed");
-    noise->hash = json.at("hash") == "slides" ? CellHash::Slides : CellHash::Integer;
+  if (randomness(pattern)) {
+    set_randomness(pattern, {json.at("seed"), json.at("hash") == "slides" ? CellHash::Slides : CellHash::Integer});
+  }
+  if (auto* lines = std::get_if<LineIntegralConvolution>(&pattern)) {
+    for (const Json& point : json.at("singularities")) {
+      lines->singularities.push_back({{Length::from_um(point.at(0)), Length::from_um(point.at(1))}, point.at(2)});
+    }
   }
   return pattern;
 }

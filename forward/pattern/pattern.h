@@ -1,78 +1,78 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <variant>
 
-#include "forward/base/units.h"
-#include "forward/pattern/noise_lattice.h"
+#include "forward/pattern/pattern_compositions.h"
+#include "forward/pattern/pattern_kinds.h"
 #include "forward/surface/height_field.h"
 #include "forward/surface/slope_covariance.h"
 
 namespace mezzotint {
 
-/// Sparse convolution noise as relief: height · (½ + noise(p)), cut to [0, height]; p = the position along
-/// `direction` divided by `scale`, and across it divided by scale·stretch.
-///
-/// Frame    `direction` is that of the steeper slopes (the short side of the grains), from +x.
-/// Units    RMS slope along `direction` 0.649·height/scale before the cut, which takes 0.1 % of the samples.
-/// Source   Frisvad 2019, slide "Noise".
-struct Noise {
-  Length scale = Length::from_um(90.0);
-  double stretch = 1.0;
-  Angle direction;
-  Length height = Length::from_um(16.0);
-  std::uint64_t seed = 1;
-  CellHash hash = CellHash::Integer;
-};
-
-/// height · (½ sin(2πu/λ_u) sin(2πv/λ_v) + ½), u along `direction`. Source: slide "2D sinusoid".
-struct Sinusoid {
-  Length wavelength_u = Length::from_um(120.0);
-  Length wavelength_v = Length::from_um(120.0);
-  Angle direction;
-  Length height = Length::from_um(16.0);
-};
-
-/// Parallel ridges of triangular section; `direction` is that of their wave vector (across the crests).
-/// `skew` is where the crest stands in a period: ½ is symmetric, towards 0 or 1 a saw.
-struct Ridges {
-  Length wavelength = Length::from_um(120.0);
-  Angle direction;
-  Length height = Length::from_um(16.0);
-  double skew = 0.5;
-};
-
 /// What is printed on purpose.
-using Pattern = std::variant<Noise, Sinusoid, Ridges>;
+using Pattern = std::variant<Noise, FractionalBrownianMotion, Turbulence, LineIntegralConvolution, Sinusoid, Ridges,
+                             PatternSum, PatternProduct, TurnedPattern, MaskedPattern, PatternRegions>;
 
-/// "noise", "sinusoid", "ridges".
+/// A pattern within another.
+struct PatternPart {
+  Pattern pattern;
+  int label = 0;  ///< the value of its pixels; for regions
+};
+
+/// "noise", "fbm", "turbulence", "line_integral_convolution", "sinusoid", "ridges"; "sum", "product", "rotate", "mask",
+/// "regions".
 [[nodiscard]] std::string_view kind_name(const Pattern& pattern);
 
-/// @throws InvalidInput for lengths that are not positive and finite, stretch outside of [1, 64], skew
-///         outside of [0.01, 0.99].
+/// Its parts; null for a simple kind.
+[[nodiscard]] const std::vector<PatternPart>* parts_of(const Pattern& pattern);
+
+/// The height of the highest possible point over the lowest.
+[[nodiscard]] Length height_of(const Pattern& pattern);
+
+/// Limits of a composition: 16 parts (256 regions), 8 levels, 512 patterns in all.
+/// @throws InvalidInput for a parameter outside of its range (pattern_parameters), a length that is not finite, or a
+///         composition without the parts that it needs.
 void require_valid(const Pattern& pattern);
 
-/// A point of the plane.
-struct Position {
-  Length x;
-  Length y;
-};
+/// The pattern on a grid: sample (c, r) is its height over its own zero, in [0, height_of], at
+/// (c·pitch_x, r·pitch_y) + origin.
+///
+/// With Continuation::Periodic the tile holds whole numbers of periods along both sides: the pattern's lengths and
+/// direction are changed as little as that needs (periodic_change), whatever its direction.
+/// @throws InvalidInput for a tile that is too small for it, or a line field with singularities, which fits no tile.
+[[nodiscard]] HeightField synthesize(const Pattern& pattern, const Grid& grid, const Position& origin = {},
+                                     Continuation continuation = Continuation::Mirrored);
 
-/// The pattern on a grid: sample (c, r) is its height over its own zero, in [0, height], at
-/// (c·pitch_x, r·pitch_y) + origin. Not periodic: a pattern with a free direction fits no tile.
-[[nodiscard]] HeightField synthesize(const Pattern& pattern, const Grid& grid, const Position& origin = {});
+/// By how much, relatively, a pattern is stretched, sheared or turned to fit a periodic grid; of a composition, the
+/// largest change of a part.
+[[nodiscard]] double periodic_change(const Pattern& pattern, const Grid& grid);
 
 /// Closed-form slope covariance before the cut to [0, height] and before printing.
-/// Source   noise on the lattice plane: E|∇₂n|² = 0.8427; sinusoid and ridges: elementary.
-[[nodiscard]] SlopeCovariance closed_form_slope_covariance(const Pattern& pattern);
+///
+/// None for what has no such form: a line field with singularities (its slopes depend on the place), masks and regions
+/// (cliffs), and a sum or product of periodic parts that share a direction, which may beat or add up.
+/// Source   noise on the lattice plane: E|∇₂n|² = 0.8427; sinusoid and ridges: elementary. Line integral convolution:
+///          quadrature of the noise's stationary autocorrelation, within 3 %. Compositions: independent stationary
+///          parts; of a product E[(fg)_x²] = E f_x² E g² + E f² E g_x².
+[[nodiscard]] std::optional<SlopeCovariance> closed_form_slope_covariance(const Pattern& pattern);
 
-/// Another draw of the same texture: a noise gets another seed; the other kinds have no randomness of their
-/// own and are shifted by a part of their period.
+/// Another draw of the same texture: noises get another seed; sinusoid and ridges have no randomness of their own and
+/// are shifted by a part of their period, but not within a composition.
 struct PatternInstance {
   Pattern pattern;
   Position origin;
 };
 [[nodiscard]] PatternInstance draw_instance(const Pattern& pattern, std::uint64_t seed);
+
+/// What tells one draw of a random texture from another. None for kinds without randomness, and for compositions.
+struct Randomness {
+  std::uint64_t seed = 1;
+  CellHash hash = CellHash::Integer;
+};
+[[nodiscard]] std::optional<Randomness> randomness(const Pattern& pattern);
+void set_randomness(Pattern& pattern, const Randomness& randomness);
 
 }  // namespace mezzotint

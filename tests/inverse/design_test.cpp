@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "forward/base/error.h"
 #include "inverse/closed_form_start.h"
 
 namespace mezzotint {
@@ -68,13 +69,27 @@ TEST(Design, NeverSearchesOnTheDrawsThatJudgeIt) {
 TEST(Design, BeginsWhereTheClosedFormPutsIt) {
   const PrinterProfile printer;
   const Target target = beckmann_target({0.12, 0.06, 20.0_deg});
-  const Pattern start = closed_form_start(Noise{.height = 12.0_um}, target, printer, 0.55_um);
-  // A start, not the truth: the printed slopes are within a third of the target's.
   const PrintedTexture texture(printer, {.pixels = 128, .subsamples = 4}, {1, 2, 3, 4});
-  const SlopeAxes printed = estimate_axes(texture.slope_covariances(start, GrayLevels::Quantized)).axes;
-  EXPECT_NEAR(printed.rms_major / target.slopes.rms_major, 1.0, 0.33);
-  EXPECT_NEAR(printed.rms_minor / target.slopes.rms_minor, 1.0, 0.33);
-  EXPECT_LT(axis_difference(printed.rotation, target.slopes.rotation).degrees(), 5.0);
+  for (const Pattern& pattern :
+       {Pattern{Noise{.height = 12.0_um}}, Pattern{FractionalBrownianMotion{.height = 12.0_um, .octaves = 2}},
+        Pattern{Turbulence{.height = 12.0_um, .octaves = 2}}, Pattern{LineIntegralConvolution{.height = 12.0_um}}}) {
+    const Pattern start = closed_form_start(pattern, target, printer, 0.55_um);
+    // A start, not the truth: the printed slopes are within a third of the target's.
+    const SlopeAxes printed = estimate_axes(texture.slope_covariances(start, GrayLevels::Quantized)).axes;
+    EXPECT_NEAR(printed.rms_major / target.slopes.rms_major, 1.0, 0.33) << kind_name(pattern);
+    EXPECT_NEAR(printed.rms_minor / target.slopes.rms_minor, 1.0, 0.33) << kind_name(pattern);
+    EXPECT_LT(axis_difference(printed.rotation, target.slopes.rotation).degrees(), 5.0) << kind_name(pattern);
+  }
+}
+
+TEST(Design, RefusesToSearchWhatItCannotChange) {
+  DesignProblem problem = small_problem();
+  problem.pattern = FractionalBrownianMotion{};
+  problem.free = {{"octaves", 2.0, 5.0, {}}};
+  EXPECT_THROW((void)search_variables(problem), InvalidInput);
+  problem.pattern = PatternSum{{{Noise{}}, {Ridges{}}}};
+  problem.free = {};
+  EXPECT_THROW((void)search_variables(problem), InvalidInput);
 }
 
 }  // namespace

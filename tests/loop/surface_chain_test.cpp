@@ -20,6 +20,12 @@ TEST(Commands, LeadFromAPatternToItsLobe) {
   EXPECT_EQ(json("info relief.gwy").at("width").at("value"), 128.0);
   EXPECT_NEAR(json("roughness relief.gwy --level none").at("Sq").at("value"), 1.5, 1e-6);
 
+  // 128 µm hold four and two waves: made periodic, nothing of it is changed.
+  EXPECT_NEAR(json("synthesize pattern.toml -o tile.gwy --set grid.periodic=true").at("periodic_change").at("value"),
+              0.0, 1e-12);
+  EXPECT_EQ(json("info tile.gwy").at("periodic"), true);
+  EXPECT_EQ(json("info relief.gwy").at("periodic"), false);
+
   const auto corrected = json("correct relief.gwy -o corrected.gwy --level plane --outliers 5 --fill");
   EXPECT_EQ(corrected.at("missing_after"), 0);
   EXPECT_EQ(json("correct relief.gwy -o part.gwy --crop 8,8,32,16").at("written"), "part.gwy");

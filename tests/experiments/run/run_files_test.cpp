@@ -1,5 +1,6 @@
 #include "experiments/run/run_files.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -30,6 +31,21 @@ TEST(RunFiles, GiveBackADesignBitForBit) {
   EXPECT_EQ(read.history[0].objective, 0.1 + 0.2);
   EXPECT_TRUE(std::isnan(read.history[1].objective));
   EXPECT_EQ(read.fresh_covariances[1].xy, -0.6);
+}
+
+TEST(RunFiles, GiveBackEveryPatternThatCanBeSearched) {
+  LineIntegralConvolution lines{.length = 123.4_um, .seed = 5, .hash = CellHash::Slides};
+  lines.singularities = {{{1.5_um, -2.5_um}, -0.5}, {{}, 1.0}};
+  const FractionalBrownianMotion motion{.hurst = 0.3, .octaves = 7, .seed = 6};
+  for (const Pattern& pattern :
+       {Pattern{motion}, Pattern{Turbulence{.octaves = 2}}, Pattern{lines}, Pattern{Sinusoid{}}, Pattern{Ridges{}}}) {
+    Design design = some_design();
+    design.pattern = pattern;
+    const Design read = design_from_json(nlohmann::ordered_json::parse(to_json(design).dump()));
+    const Grid grid{24, 24, 5.0_um, 5.0_um};
+    const HeightField before = synthesize(design.pattern, grid), after = synthesize(read.pattern, grid);
+    EXPECT_TRUE(std::ranges::equal(before.heights_um(), after.heights_um())) << kind_name(pattern);
+  }
 }
 
 TEST(RunFiles, GiveBackATargetBitForBit) {

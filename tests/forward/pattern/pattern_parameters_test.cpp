@@ -1,5 +1,7 @@
 #include "forward/pattern/pattern_parameters.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "forward/base/error.h"
@@ -12,11 +14,15 @@ TEST(PatternParameters, AreReadBackAsTheyWereSetForEveryKind) {
     Pattern pattern = default_pattern(kind);
     EXPECT_EQ(kind_name(pattern), kind);
     double value = 0.5;
-    for (const auto& parameter : pattern_parameters(pattern)) set_parameter(pattern, parameter.name, value += 0.0625);
+    const auto next = [&value](const PatternParameter& parameter) {
+      value += 0.0625;
+      return parameter.whole ? std::round(10.0 * value) : value;
+    };
+    for (const auto& parameter : pattern_parameters(pattern)) set_parameter(pattern, parameter.name, next(parameter));
     value = 0.5;
     for (const auto& parameter : pattern_parameters(pattern)) {
       // Degrees pass through radians.
-      EXPECT_NEAR(get_parameter(pattern, parameter.name), value += 0.0625, 1e-12) << kind << " " << parameter.name;
+      EXPECT_NEAR(get_parameter(pattern, parameter.name), next(parameter), 1e-12) << kind << " " << parameter.name;
     }
   }
 }

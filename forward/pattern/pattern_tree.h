@@ -1,0 +1,43 @@
+#pragma once
+
+#include "forward/pattern/pattern.h"
+#include "forward/pattern/pattern_map.h"
+
+/// Inside of forward/pattern.
+
+namespace mezzotint {
+
+template <typename Kind>
+concept Random = requires(Kind kind) {
+  kind.seed;
+};
+
+template <typename Kind>
+concept Composed = requires(Kind kind) {
+  kind.parts;
+};
+
+/// The pattern with seeds by which its parts are independent of one another.
+[[nodiscard]] Pattern with_independent_parts(const Pattern& pattern);
+
+/// All random parts get that seed.
+void seed_all(Pattern& pattern, std::uint64_t seed);
+
+/// Where the part of a turned pattern lies.
+[[nodiscard]] Sheet sheet_below(const TurnedPattern& turned, Sheet sheet);
+template <typename Kind>
+[[nodiscard]] Sheet sheet_below(const Kind&, const Sheet& sheet) {
+  return sheet;
+}
+
+/// The map from the sheet's µm to a kind's own units, for its coarsest octave and before it is fitted to a tile.
+[[nodiscard]] PatternMap map_of(const Noise& noise, const Sheet& sheet);
+[[nodiscard]] PatternMap map_of(const FractionalBrownianMotion& motion, const Sheet& sheet);
+[[nodiscard]] PatternMap map_of(const Turbulence& turbulence, const Sheet& sheet);
+[[nodiscard]] PatternMap map_of(const LineIntegralConvolution& lines, const Sheet& sheet);
+[[nodiscard]] PatternMap map_of(const Sinusoid& sinusoid, const Sheet& sheet);
+[[nodiscard]] PatternMap map_of(const Ridges& ridges, const Sheet& sheet);
+/// In pictures, which repeat.
+[[nodiscard]] PatternMap map_of(const PatternRegions& regions, const Sheet& sheet);
+
+}  // namespace mezzotint
