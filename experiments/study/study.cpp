@@ -1,20 +1,29 @@
 #include "experiments/study/study.h"
 
+#include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <functional>
-#include <optional>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
-#include "experiments/study/scene.h"
-#include "forward/base/error.h"
+#include "experiments/study/study_methods.h"
 #include "forward/ladder/ladder.h"
-#include "forward/scattering/path_tracing.h"
 
 namespace mezzotint {
 
 namespace {
+
+// The reference has a seed of its own.
+constexpr std::uint64_t reference_seed = 1000;
+// A run is repeated until it has taken so long, at most so many times.
+constexpr double seconds_of_runs = 0.1;
+constexpr int most_runs = 5;
 
 double cpu_seconds() {
   timespec now{};
@@ -22,174 +31,252 @@ double cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-struct Method {
-  std::string name;
-  std::vector<int> log2_samples;  ///< budgets
-  std::function<void(PathTracingOptions&)> set;
-  bool coarse = false;  ///< on every second sample
+double mean_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+double error_of_mean(const std::vector<double>& values) {
+  if (values.size() < 2) return 0.0;
+  const double mean = mean_of(values);
+  double sum = 0.0;
+  for (const double value : values) sum += (value - mean) * (value - mean);
+  const auto count = static_cast<double>(values.size());
+  return std::sqrt(sum / (count - 1.0) / count);
+}
+
+// 1.2533 = √(π/2): the standard error of the median of many normal numbers over that of their mean.
+Estimate median_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  const double median = values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+  return {median, 1.2533 * error_of_mean(values)};
+}
+
+/// What runs are compared with.
+struct Reference {
+  MapEstimate map;
+  double floor = 0.0;
 };
 
-// The first is the slides' plain method, with the weight that conserves energy (with its own it converges to a wrong
-// map).
-std::vector<Method> path_methods() {
-  using Options = PathTracingOptions;
-  const std::vector<int> slow = {12, 14, 16, 18}, fast = {12, 14, 16, 18, 20};
-  const auto beam = [](Options& o) { o.control_variate = ControlVariate::Off; };
-  return {
-      {"slides plain", slow,
-       [=](Options& o) {
-         beam(o);
-         o.tracer = TracerKind::Embree;
-         o.placement = Placement::Random;
-         o.roulette_first = true;
-       }},
-      {"paths, Embree", slow,
-       [=](Options& o) {
-         beam(o);
-         o.tracer = TracerKind::Embree;
-       }},
-      {"paths, random positions", fast,
-       [=](Options& o) {
-         beam(o);
-         o.placement = Placement::Random;
-       }},
-      {"paths, lattice", fast,
-       [=](Options& o) {
-         beam(o);
-         o.placement = Placement::Lattice;
-       }},
-      {"paths, strata", fast, beam},
-      {"paths, strata, interpolated normals", slow,
-       [=](Options& o) {
-         beam(o);
-         o.normals = NormalKind::Interpolated;
-       }},
-      {"paths, splat corrected", fast, [](Options& o) { o.control_variate = ControlVariate::On; }},
-      {"paths, splat corrected, 2 bounces", fast,
-       [](Options& o) {
-         o.control_variate = ControlVariate::On;
-         o.max_bounces = 2;
-       }},
-      {"paths, splat corrected, mesh halved", fast, [](Options& o) { o.control_variate = ControlVariate::On; }, true},
-      {"single", fast,
-       [](Options& o) {
-         o.control_variate = ControlVariate::On;
-         o.max_bounces = 1;
-       }},
-  };
+// The noise of the corrected square where there is no difference: products of two halves' noise, of variance 4 σ⁴ each.
+Reference reference_of(const Bsdf& bsdf) {
+  const std::vector<double> areas = projected_solid_angles(bsdf.grid);
+  double noise = 0.0, power = 0.0;
+  for (std::size_t bin = 0; bin < areas.size(); ++bin) {
+    noise += 4.0 * areas[bin] * areas[bin] * std::pow(bsdf.reflection.standard_error[bin], 4.0);
+    power += areas[bin] * bsdf.reflection.mean[bin] * bsdf.reflection.mean[bin];
+  }
+  return {bsdf.reflection, std::sqrt(std::sqrt(noise) / power)};
 }
+
+/// Errors and times of the runs of one point.
+class Runs {
+public:
+  Runs(const DirectionGrid& grid, const Reference& reference) : grid_(grid), reference_(reference) {}
+
+  void add(const Bsdf& bsdf, double seconds) {
+    seconds_.push_back(seconds);
+    const DirectionMap& mean = bsdf.reflection.mean;
+    const MapEstimate exact{mean, DirectionMap(mean.size(), 0.0), mean, mean};
+    with_noise_.push_back(relative_l2(grid_, exact, reference_.map).corrected);
+    without_.push_back(relative_l2(grid_, bsdf.reflection, reference_.map).corrected);
+  }
+  [[nodiscard]] bool enough() const {
+    return std::accumulate(seconds_.begin(), seconds_.end(), 0.0) >= seconds_of_runs ||
+           seconds_.size() >= static_cast<std::size_t>(most_runs);
+  }
+  [[nodiscard]] std::size_t count() const { return seconds_.size(); }
+
+  void write(StudyPoint& point) const {
+    const Estimate time = median_of(seconds_), error = root_mean_square(with_noise_), bias = root_mean_square(without_);
+    point.runs = static_cast<int>(seconds_.size());
+    point.seconds = time.value;
+    point.seconds_error = time.standard_error;
+    point.error = error.value;
+    point.error_spread = error.standard_error;
+    point.bias = bias.value;
+    point.bias_error = bias.standard_error;
+    point.floor = reference_.floor;
+  }
+
+private:
+  // The runs share the reference, so that its part of the error does not average out.
+  static Estimate root_mean_square(const std::vector<Estimate>& errors) {
+    std::vector<double> squares;
+    double shared = 0.0;
+    for (const Estimate& error : errors) {
+      squares.push_back(error.value * error.value);
+      shared += error.standard_error / static_cast<double>(errors.size());
+    }
+    const double root = std::sqrt(mean_of(squares));
+    const double scatter = root > 0.0 ? error_of_mean(squares) / (2.0 * root) : 0.0;
+    return {root, std::hypot(scatter, shared)};
+  }
+
+  const DirectionGrid& grid_;
+  const Reference& reference_;
+  std::vector<double> seconds_;
+  std::vector<Estimate> with_noise_, without_;
+};
 
 /// One relief, all directions of the light.
 class ReliefStudy {
 public:
-  ReliefStudy(const StudyOptions& options, StudyRelief relief)
-      : options_(options),
-        relief_(std::move(relief)),
-        coarse_(coarser(relief_.field)),
-        tracer_(relief_.field),
-        coarse_tracer_(coarse_) {}
+  ReliefStudy(const StudyOptions& options, StudyRelief relief) : options_(options), relief_(std::move(relief)) {
+    for (const std::size_t step : {1, 2, 4})
+      tracers_[step] = std::make_unique<PathTracer>(step == 1 ? relief_.field : coarser(relief_.field, step));
+  }
 
   void add(double theta_deg, std::vector<StudyPoint>& points) {
     theta_deg_ = theta_deg;
-    PathTracingOptions tracing = base();
     warm_up();
-    tracing.samples = std::uint64_t{1} << 22;
-    tracing.seed = options_.seed + 1000;
-    const Bsdf reference = tracer_.trace(tracing);
-    reference_ = reference.reflection.mean;
-    floor_ = relative_error(tracing.grid, reference.reflection);
+    PathTracingOptions tracing = base(options_.seed + reference_seed);
+    tracing.samples = options_.reference_samples;
+    reference_ = reference_of(tracers_.at(1)->trace(tracing));
     add_rungs(points);
-    for (const Method& method : path_methods()) {
+    for (const PathMethod& method : path_methods()) {
+      if (method.needs_splat && !splat_is_possible()) continue;
       for (const int bits : method.log2_samples) {
-        PathTracingOptions wanted = base();
-        wanted.samples = std::uint64_t{1} << bits;
-        method.set(wanted);
-        PathTracer& tracer = method.coarse ? coarse_tracer_ : tracer_;
-        points.push_back(measure(method.name, wanted.samples, [&] { return tracer.trace(wanted); }));
+        const std::uint64_t samples = std::uint64_t{1} << bits;
+        if (samples <= options_.most_samples) points.push_back(traced(method, samples));
       }
     }
   }
 
 private:
-  [[nodiscard]] PathTracingOptions base() const {
+  [[nodiscard]] PathTracingOptions base(std::uint64_t seed) const {
     PathTracingOptions tracing;
     tracing.incidence = {Angle::from_degrees(theta_deg_), Angle::from_degrees(25.0)};
     tracing.grid = {options_.resolution, options_.resolution};
     tracing.material = options_.material;
-    tracing.seed = options_.seed;
+    tracing.seed = seed;
     return tracing;
   }
 
-  // Trees, pyramids and normals are built by the first run that needs them; and the splat of another run is not kept.
+  [[nodiscard]] bool splat_is_possible() const {
+    const auto* clear = std::get_if<Dielectric>(&options_.material);
+    return relief_.field.periodic() && (clear == nullptr || clear->absorption_per_um == 0.0);
+  }
+
+  // Trees, pyramids and normals are built by the first run that needs them.
   void warm_up() {
-    for (PathTracer* tracer : {&tracer_, &coarse_tracer_}) {
+    for (const auto& [step, tracer] : tracers_) {
       for (const TracerKind kind : {TracerKind::HeightField, TracerKind::Embree}) {
-        PathTracingOptions few = base();
+        if (kind == TracerKind::Embree && step > 1) continue;
+        PathTracingOptions few = base(1);
         few.samples = 64;
         few.tracer = kind;
         few.control_variate = ControlVariate::Off;
-        few.normals = NormalKind::Interpolated;
+        few.normals = step == 1 ? NormalKind::Interpolated : NormalKind::Geometric;
         (void)tracer->trace(few);
       }
     }
   }
 
-  void forget_splat() {
-    PathTracingOptions other = base();
+  // Each run makes its own splat.
+  void forget_splats() {
+    if (!splat_is_possible()) return;
+    PathTracingOptions other = base(1);
     other.grid = {8, 8};
-    (void)tracer_.splat(other);
-    (void)coarse_tracer_.splat(other);
+    for (const auto& [step, tracer] : tracers_) (void)tracer->splat(other);
   }
 
-  StudyPoint measure(const std::string& method, std::uint64_t samples, const std::function<Bsdf()>& run) {
-    forget_splat();
-    const double start = cpu_seconds();
-    const Bsdf bsdf = run();
-    StudyPoint point{relief_.family, relief_.gradient, theta_deg_, method, samples, cpu_seconds() - start};
-    point.error = relative_l2(bsdf.grid, bsdf.reflection.mean, reference_);
-    point.floor = floor_;
+  void measure(StudyPoint& point, const std::function<Bsdf(std::uint64_t)>& run) {
+    const DirectionGrid grid{options_.resolution, options_.resolution};
+    Runs runs(grid, reference_);
+    while (!runs.enough()) {
+      forget_splats();
+      const double start = cpu_seconds();
+      const Bsdf bsdf = run(options_.seed + runs.count());
+      runs.add(bsdf, cpu_seconds() - start);
+      if (point.tolerance) point.chosen = bsdf.provenance.at("model");
+    }
+    runs.write(point);
+  }
+
+  [[nodiscard]] StudyPoint named(const std::string& method, std::uint64_t samples = 0) const {
+    return {{relief_.family, relief_.gradient, theta_deg_}, method, samples};
+  }
+
+  StudyPoint traced(const PathMethod& method, std::uint64_t samples) {
+    StudyPoint point = named(method.name, samples);
+    measure(point, [&](std::uint64_t seed) {
+      PathTracingOptions tracing = base(seed);
+      tracing.samples = samples;
+      method.set(tracing);
+      return tracers_.at(method.coarsening)->trace(tracing);
+    });
     return point;
   }
 
   void add_rungs(std::vector<StudyPoint>& points) {
-    const PathTracingOptions tracing = base();
+    const PathTracingOptions tracing = base(options_.seed);
     LadderOptions ladder{.incidence = tracing.incidence, .grid = tracing.grid, .material = tracing.material};
-    ladder.tolerance = options_.auto_tolerance;
-    ladder.seed = options_.seed;
-    points.push_back(measure("moments", 0, [&] { return bsdf_from_moments(relief_.field, ladder); }));
-    points.push_back(measure("slopes", 0, [&] { return tracer_.splat(tracing); }));
-    points.push_back(measure("auto", 0, [&] { return simulate_auto(relief_.field, tracer_, ladder); }));
+    points.push_back(named(moments_method));
+    measure(points.back(), [&](std::uint64_t) { return bsdf_from_moments(relief_.field, ladder); });
+    if (splat_is_possible()) {
+      points.push_back(named(slopes_method));
+      measure(points.back(), [&](std::uint64_t) { return tracers_.at(1)->splat(tracing); });
+    }
+    for (const double tolerance : options_.auto_tolerances) {
+      points.push_back(named(auto_method));
+      points.back().tolerance = ladder.tolerance = tolerance;
+      measure(points.back(), [&](std::uint64_t seed) {
+        ladder.seed = seed;
+        return simulate_auto(relief_.field, *tracers_.at(1), ladder);
+      });
+    }
   }
 
   const StudyOptions& options_;
   StudyRelief relief_;
-  HeightField coarse_;
-  PathTracer tracer_, coarse_tracer_;
+  std::map<std::size_t, std::unique_ptr<PathTracer>> tracers_;  ///< by the mesh's coarsening
   double theta_deg_ = 0.0;
-  DirectionMap reference_;
-  double floor_ = 0.0;
+  Reference reference_;
 };
 
-bool same_scene(const StudyPoint& a, const StudyPoint& b) {
-  return a.relief == b.relief && a.gradient == b.gradient && a.theta_deg == b.theta_deg;
+/// The reliefs of a study, made one at a time.
+struct ReliefMaker {
+  std::string family;
+  double gradient;
+  std::function<StudyRelief()> make;
+};
+
+std::vector<ReliefMaker> reliefs_of(const StudyOptions& options) {
+  std::vector<ReliefMaker> list;
+  for (const std::string& family : options.families) {
+    for (const double gradient : options.gradients) {
+      list.push_back(
+          {family, gradient, [=, &options] { return make_study_relief(family, gradient, {.cells = options.cells}); }});
+    }
+  }
+  if (options.scan) list.push_back({options.scan->family, options.scan->gradient, [&] { return *options.scan; }});
+  return list;
 }
 
 }  // namespace
 
+std::vector<StudyScene> scenes_of(const StudyOptions& options) {
+  std::vector<StudyScene> scenes;
+  for (const ReliefMaker& relief : reliefs_of(options))
+    for (const double theta : options.thetas_deg) scenes.push_back({relief.family, relief.gradient, theta});
+  return scenes;
+}
+
 std::vector<StudyPoint> run_study(const StudyOptions& options, const Progress& progress) {
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   std::vector<StudyPoint> points;
-  const auto total =
-      static_cast<double>(study_families().size() * options.gradients.size() * options.thetas_deg.size());
+  const auto total = static_cast<double>(scenes_of(options).size());
   double done = 0.0;
-  for (const std::string& family : study_families()) {
-    for (const double gradient : options.gradients) {
-      ReliefStudy study(options, make_study_relief(family, gradient, options.cells));
-      for (const double theta : options.thetas_deg) {
-        report(progress, "chart", done / total, fmt::format("{}, s = {}, {}°", family, gradient, theta));
-        study.add(theta, points);
-        done += 1.0;
-      }
+  for (const ReliefMaker& relief : reliefs_of(options)) {
+    ReliefStudy study(options, relief.make());
+    for (const double theta : options.thetas_deg) {
+      report(progress, "chart", done / total,
+             fmt::format("{}, s = {:.3g}, {}°", relief.family, relief.gradient, theta));
+      study.add(theta, points);
+      done += 1.0;
     }
   }
   mark_pareto_front(points);
@@ -197,34 +284,49 @@ std::vector<StudyPoint> run_study(const StudyOptions& options, const Progress& p
 }
 
 void mark_pareto_front(std::vector<StudyPoint>& points) {
+  const auto told = [](const StudyPoint& point) { return std::max(point.error, point.floor); };
   for (StudyPoint& point : points) {
     // `auto` is drawn on the front, it is no part of it.
-    point.on_front = point.method != "auto";
+    point.on_front = point.method != auto_method;
     for (const StudyPoint& other : points) {
-      if (other.method == "auto" || !same_scene(point, other)) continue;
-      const bool better = other.error < point.error && other.seconds <= point.seconds;
-      if (better || (other.error == point.error && other.seconds < point.seconds)) point.on_front = false;
+      if (other.method == auto_method || !(point.scene == other.scene)) continue;
+      const bool better = told(other) < told(point) && other.seconds <= point.seconds;
+      if (better || (told(other) == told(point) && other.seconds < point.seconds)) point.on_front = false;
     }
   }
 }
 
+namespace {
+
+nlohmann::json row_of(const StudyPoint& point) {
+  nlohmann::json row = {{"relief", point.scene.relief},
+                        {"rms_gradient", point.scene.gradient},
+                        {"theta_deg", point.scene.theta_deg},
+                        {"method", point.method},
+                        {"samples", point.samples},
+                        {"runs", point.runs},
+                        {"seconds", point.seconds},
+                        {"seconds_standard_error", point.seconds_error},
+                        {"relative_l2", point.error},
+                        {"relative_l2_standard_error", point.error_spread},
+                        {"bias", point.bias},
+                        {"bias_standard_error", point.bias_error},
+                        {"smallest_error_told", point.floor},
+                        {"on_front", point.on_front}};
+  if (point.tolerance) row["tolerance"] = *point.tolerance;
+  if (!point.chosen.empty()) row["chosen"] = point.chosen;
+  return row;
+}
+
+}  // namespace
+
 nlohmann::json to_json(const StudyOptions& options, const std::vector<StudyPoint>& points) {
   nlohmann::json rows = nlohmann::json::array();
-  for (const StudyPoint& point : points) {
-    rows.push_back({{"relief", point.relief},
-                    {"rms_gradient", point.gradient},
-                    {"theta_deg", point.theta_deg},
-                    {"method", point.method},
-                    {"samples", point.samples},
-                    {"seconds", point.seconds},
-                    {"relative_l2", point.error},
-                    {"reference_error", point.floor},
-                    {"on_front", point.on_front}});
-  }
+  for (const StudyPoint& point : points) rows.push_back(row_of(point));
   return {{"cells", options.cells},
           {"resolution", options.resolution},
           {"material", to_string(options.material)},
-          {"auto_tolerance", options.auto_tolerance},
+          {"reference_samples", options.reference_samples},
           {"points", rows}};
 }
 

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "experiments/study/scene.h"
 #include "forward/base/progress.h"
 #include "forward/optics/material.h"
 
@@ -13,27 +15,47 @@ namespace mezzotint {
 
 /// What a study of error against time goes through.
 struct StudyOptions {
-  std::vector<double> gradients = {0.05, 0.3, 0.8};
-  std::vector<double> thetas_deg = {0.0, 30.0, 60.0, 80.0};
-  std::size_t cells = 512;      ///< a side of each relief
-  std::size_t resolution = 64;  ///< bins a side of the maps
+  std::vector<std::string> families = study_families();
+  std::vector<double> gradients = {0.05, 0.3, 1.0};
+  std::vector<double> thetas_deg = {0.0, 30.0, 60.0, 85.0};
+  std::optional<StudyRelief> scan;  ///< at its own gradient
+  std::size_t cells = 512;          ///< a side of each relief, but for the scan
+  std::size_t resolution = 64;      ///< bins a side of the maps
   Material material = Dielectric{1.5};
-  double auto_tolerance = 0.05;  ///< for the point that `auto` chooses
+  std::vector<double> auto_tolerances = {0.05, 0.01};  ///< for the points that `auto` chooses
+  std::uint64_t reference_samples = std::uint64_t{1} << 22;
+  std::uint64_t most_samples = std::uint64_t{1} << 20;  ///< larger budgets are left out
   std::uint64_t seed = 1;
+};
+
+/// One scene of a study.
+struct StudyScene {
+  std::string relief;
+  double gradient = 0.0;
+  double theta_deg = 0.0;
+  bool operator==(const StudyScene&) const = default;
 };
 
 /// One method with one budget on one scene.
 struct StudyPoint {
-  std::string relief;
-  double gradient = 0.0;
-  double theta_deg = 0.0;
+  StudyScene scene;
   std::string method;
-  std::uint64_t samples = 0;  ///< 0: none
-  double seconds = 0.0;       ///< CPU time of one thread; trees and pyramids were built before
-  double error = 0.0;         ///< relative_l2 of the reflection to the reference, its own noise included
-  double floor = 0.0;         ///< relative standard error of the reference: nothing below it can be told
-  bool on_front = false;      ///< no other method is both faster and nearer
+  std::uint64_t samples = 0;        ///< 0: none
+  std::optional<double> tolerance;  ///< of `auto`
+  int runs = 1;                     ///< with a seed each; short runs are repeated
+  double seconds = 0.0;             ///< CPU time of one thread, median; trees and pyramids were built before
+  double seconds_error = 0.0;       ///< standard error of it; 0 for a single run
+  double error = 0.0;               ///< relative_l2 of the reflection to the reference, whose noise is taken out
+  double error_spread = 0.0;        ///< standard error of it
+  double bias = 0.0;                ///< the same with the run's own noise taken out too: what no more paths will lower
+  double bias_error = 0.0;          ///< standard error of it
+  double floor = 0.0;               ///< deviation of `error` where there is none: nothing below it can be told
+  std::string chosen;               ///< the rung that `auto` took
+  bool on_front = false;            ///< no other method is both faster and nearer
 };
+
+/// The scenes of a study, in the order in which they are measured.
+[[nodiscard]] std::vector<StudyScene> scenes_of(const StudyOptions& options);
 
 /// Measures all methods on all scenes, on one thread. Takes minutes.
 [[nodiscard]] std::vector<StudyPoint> run_study(const StudyOptions& options, const Progress& progress);

@@ -1,180 +1,148 @@
 #include "experiments/study/study_svg.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
+
+#include "experiments/study/svg_panel.h"
 
 namespace mezzotint {
 
 namespace {
 
-constexpr double panel_width = 230.0, panel_height = 190.0, gap = 14.0, left = 74.0, top = 52.0, legend = 250.0;
-constexpr double fastest = 1e-4, slowest = 10.0, smallest = 1e-4, largest = 3.0;
+constexpr double panel_width = 230.0, panel_height = 190.0, gap = 14.0, left = 74.0, top = 92.0, right = 156.0;
 
-// Okabe & Ito's colours, which readers with any colour vision can tell apart; and a mark, for print without colour.
-struct Style {
-  const char* method;
-  const char* colour;
-  const char* mark;
-};
-constexpr Style styles[] = {{"slides plain", "#000000", "square"},
-                            {"paths, Embree", "#7f7f7f", "circle"},
-                            {"paths, random positions", "#e69f00", "circle"},
-                            {"paths, lattice", "#56b4e9", "diamond"},
-                            {"paths, strata", "#0072b2", "circle"},
-                            {"paths, strata, interpolated normals", "#0072b2", "square"},
-                            {"paths, splat corrected", "#d55e00", "circle"},
-                            {"paths, splat corrected, 2 bounces", "#cc79a7", "diamond"},
-                            {"paths, splat corrected, mesh halved", "#cc79a7", "square"},
-                            {"single", "#009e73", "diamond"},
-                            {"slopes", "#009e73", "square"},
-                            {"moments", "#8a6d00", "square"},
-                            {"auto", "#d00000", "star"}};
-
-const Style& style_of(const std::string& method) {
-  const auto* found =
-      std::find_if(std::begin(styles), std::end(styles), [&](const Style& s) { return method == s.method; });
-  return found == std::end(styles) ? styles[0] : *found;
+std::vector<StudyPoint> points_at(const std::vector<StudyPoint>& points, const StudyScene& scene) {
+  std::vector<StudyPoint> here;
+  std::copy_if(points.begin(), points.end(), std::back_inserter(here),
+               [&](const StudyPoint& point) { return point.scene == scene; });
+  return here;
 }
 
-std::string mark(const Style& style, double x, double y) {
-  const std::string kind = style.mark;
-  if (kind == "circle") return fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='3' fill='{}'/>", x, y, style.colour);
-  if (kind == "square")
-    return fmt::format("<rect x='{:.1f}' y='{:.1f}' width='5.6' height='5.6' fill='{}'/>", x - 2.8, y - 2.8,
-                       style.colour);
-  if (kind == "diamond")
-    return fmt::format("<path d='M{:.1f} {:.1f}l3.8 3.8l-3.8 3.8l-3.8 -3.8z' fill='{}'/>", x, y - 3.8, style.colour);
-  std::string star = "<path d='";
-  for (int k = 0; k < 10; ++k) {
-    const double radius = k % 2 == 0 ? 8.0 : 3.4, angle = 0.62831853 * k;
-    star +=
-        fmt::format("{}{:.1f} {:.1f}", k == 0 ? 'M' : 'L', x + radius * std::sin(angle), y - radius * std::cos(angle));
-  }
-  return star + fmt::format("z' fill='none' stroke='{}' stroke-width='1.6'/>", style.colour);
-}
-
-class Panel {
+/// A figure of panels in columns and rows.
+class Figure {
 public:
-  Panel(double x, double y) : x_(x), y_(y) {}
+  Figure(std::size_t columns, std::size_t rows, const PanelAxes& axes) : columns_(columns), rows_(rows), axes_(axes) {}
 
-  [[nodiscard]] double across(double seconds) const {
-    const double t = std::log(std::clamp(seconds, fastest, slowest) / fastest) / std::log(slowest / fastest);
-    return x_ + t * panel_width;
-  }
-  [[nodiscard]] double down(double error) const {
-    const double t = std::log(std::clamp(error, smallest, largest) / smallest) / std::log(largest / smallest);
-    return y_ + (1.0 - t) * panel_height;
-  }
-
-  [[nodiscard]] std::string frame(bool first_column, bool last_column, bool last_row) const {
-    std::string svg;
-    for (int power = -4; power <= 1; ++power) {
-      const double at = across(std::pow(10.0, power));
-      svg += fmt::format("<line x1='{0:.1f}' y1='{1:.1f}' x2='{0:.1f}' y2='{2:.1f}' class='grid'/>", at, y_,
-                         y_ + panel_height);
-      // The next panel's first label stands where this one's last would.
-      if (last_row && (power < 1 || last_column))
-        svg += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>", at, y_ + panel_height + 15,
-                           label(power));
-    }
-    for (int power = -4; power <= 0; ++power) {
-      const double at = down(std::pow(10.0, power));
-      svg += fmt::format("<line x1='{1:.1f}' y1='{0:.1f}' x2='{2:.1f}' y2='{0:.1f}' class='grid'/>", at, x_,
-                         x_ + panel_width);
-      if (first_column)
-        svg += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='end'>{}</text>", x_ - 6, at + 4, label(power));
-    }
-    return svg + fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{}' height='{}' class='frame'/>", x_, y_, panel_width,
-                             panel_height);
+  void add(std::size_t column, std::size_t row, const std::string& title, const std::vector<StudyPoint>& points,
+           const std::vector<std::string>& methods, bool names) {
+    PanelPlace place;
+    place.width = panel_width;
+    place.height = panel_height;
+    place.x = left + static_cast<double>(column) * (panel_width + gap);
+    place.y = top + static_cast<double>(row) * (panel_height + gap);
+    place.numbers_left = column == 0;
+    place.numbers_below = row + 1 == rows_;
+    place.names_right = names;
+    panels_ += svg_panel(place, axes_, title, points, methods);
   }
 
-  [[nodiscard]] std::string draw(std::vector<StudyPoint> points) const {
-    std::string svg;
-    std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.seconds < b.seconds; });
-    std::string front;
-    for (const StudyPoint& point : points) {
-      if (point.on_front)
-        front += fmt::format("{}{:.1f} {:.1f}", front.empty() ? 'M' : 'L', across(point.seconds), down(point.error));
-    }
-    if (!points.empty()) {
-      const double at = down(points.front().floor);
-      svg += fmt::format("<line x1='{1:.1f}' y1='{0:.1f}' x2='{2:.1f}' y2='{0:.1f}' class='floor'/>", at, x_,
-                         x_ + panel_width);
-    }
-    svg += "<path d='" + front + "' class='front'/>";
-    for (const StudyPoint& point : points)
-      svg += mark(style_of(point.method), across(point.seconds), down(point.error));
-    return svg;
-  }
-
-  static std::string label(int power) {
-    return fmt::format("10<tspan dy='-4' font-size='8'>{}{}</tspan>", power < 0 ? "−" : "", std::abs(power));
+  [[nodiscard]] std::string text(const std::string& title, const std::string& legend) const {
+    const double plots_width = static_cast<double>(columns_) * (panel_width + gap) - gap,
+                 plots_height = static_cast<double>(rows_) * (panel_height + gap) - gap;
+    const double width = left + plots_width + right, height = top + plots_height + 48.0;
+    std::string svg = fmt::format(
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {0:.0f} {1:.0f}' width='{0:.0f}' height='{1:.0f}' "
+        "font-family='Helvetica, Arial, sans-serif' font-size='11' fill='#222'>\n<style>.grid{{stroke:#dedede}}"
+        ".frame{{fill:none;stroke:#888}}.front{{fill:none;stroke:#222;stroke-width:4;opacity:.16;stroke-linejoin:round}"
+        "}"
+        ".floor{{fill:#ededed}}.halo{{paint-order:stroke;stroke:#fff;stroke-width:3px}}</style>\n"
+        "<rect width='100%' height='100%' fill='#fff'/>\n",
+        width, height);
+    svg += fmt::format("<text x='{:.0f}' y='24' font-size='15' font-weight='bold'>{}</text>\n", left, escaped(title));
+    svg += legend + panels_;
+    svg += fmt::format(
+        "<text x='{:.1f}' y='{:.1f}' text-anchor='middle' font-size='12'>CPU time of one thread in "
+        "s</text>\n",
+        left + 0.5 * plots_width, height - 8);
+    return svg + fmt::format(
+                     "<text transform='translate(18 {:.1f}) rotate(-90)' text-anchor='middle' "
+                     "font-size='12'>relative L2 error of the reflection</text>\n</svg>\n",
+                     top + 0.5 * plots_height);
   }
 
 private:
-  double x_, y_;
+  std::size_t columns_, rows_;
+  PanelAxes axes_;
+  std::string panels_;
 };
 
-std::string legend_svg(double x, double y) {
-  std::string svg;
-  for (const Style& style : styles) {
-    svg += mark(style, x, y - 4) + fmt::format("<text x='{:.1f}' y='{:.1f}'>{}</text>", x + 14, y, style.method);
-    y += 19;
+/// A line of signs and their names.
+class Legend {
+public:
+  explicit Legend(double y) : y_(y) {}
+  void add(const std::string& sign, const std::string& name) {
+    svg_ += fmt::format("<g transform='translate({:.1f} {:.1f})'>{}</g><text x='{:.1f}' y='{:.1f}'>{}</text>\n", x_,
+                        y_ - 4, sign, x_ + 13, y_, escaped(name));
+    x_ += 34.0 + 5.6 * static_cast<double>(name.size());
   }
-  svg += fmt::format("<path d='M{:.1f} {:.1f}h20' class='front'/><text x='{:.1f}' y='{:.1f}'>Pareto front</text>",
-                     x - 8, y - 4, x + 18, y);
-  y += 19;
-  return svg +
-         fmt::format(
-             "<path d='M{:.1f} {:.1f}h20' class='floor'/><text x='{:.1f}' y='{:.1f}'>error of the reference</text>",
-             x - 8, y - 4, x + 18, y);
+  [[nodiscard]] const std::string& text() const { return svg_; }
+
+private:
+  double x_ = left + 6.0, y_;
+  std::string svg_;
+};
+
+std::string legend_of(const std::vector<std::string>& methods) {
+  Legend first(52.0), second(74.0);
+  first.add(svg_mark(style_of(plain_method), 0, 0), plain_method);
+  for (const std::string& method : methods) first.add(svg_mark(style_of(method), 0, 0), method);
+  second.add(svg_mark(style_of(auto_method), 0, 0), "what auto chose, at its tolerance");
+  second.add("<path d='M-8 0h16' class='front'/>", "Pareto front of all methods");
+  second.add("<rect x='-8' y='-5' width='16' height='10' class='floor'/>", "below the noise of the reference");
+  second.add("<circle r='2.7' fill='#fff' stroke='#222'/>", "no error found");
+  return first.text() + second.text();
+}
+
+std::string setting(const StudyOptions& options, const std::string& relief) {
+  const std::string cells = relief == "scan" && options.scan
+                                ? fmt::format("{} × {}", options.scan->field.columns(), options.scan->field.rows())
+                                : fmt::format("{}²", options.cells);
+  return fmt::format("{} cells, {}, {}² bins", cells, to_string(options.material), options.resolution);
+}
+
+std::vector<double> gradients_of(const StudyOptions& options, const std::string& relief) {
+  return relief == "scan" && options.scan ? std::vector<double>{options.scan->gradient} : options.gradients;
 }
 
 }  // namespace
 
 std::string study_svg(const StudyOptions& options, const std::vector<StudyPoint>& points, const std::string& relief) {
-  const auto columns = static_cast<double>(options.thetas_deg.size()),
-             rows = static_cast<double>(options.gradients.size());
-  const double plots_width = columns * (panel_width + gap), plots_height = rows * (panel_height + gap);
-  const double width = left + plots_width + legend, height = top + plots_height + 46.0;
-  std::string svg = fmt::format(
-      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {0:.0f} {1:.0f}' width='{0:.0f}' height='{1:.0f}' "
-      "font-family='Helvetica, Arial, sans-serif' font-size='11' fill='#222'>\n<style>.grid{{stroke:#e4e4e4}}"
-      ".frame{{fill:none;stroke:#888}}.front{{fill:none;stroke:#222;stroke-width:1.2;stroke-dasharray:4 3}}"
-      ".floor{{stroke:#b0b0b0;stroke-width:1.2;stroke-dasharray:1 3}}</style>\n<rect width='100%' height='100%' "
-      "fill='#fff'/>\n",
-      width, height);
-  svg += fmt::format(
-      "<text x='{:.0f}' y='20' font-size='14' font-weight='bold'>Error against time: {} relief, {}² cells, {}, "
-      "{}² bins</text>\n",
-      left, relief, options.cells, to_string(options.material), options.resolution);
-  for (std::size_t row = 0; row < options.gradients.size(); ++row) {
+  const std::vector<double> gradients = gradients_of(options, relief);
+  const std::vector<std::string>& methods = methods_for(StudyQuestion::Rungs);
+  Figure figure(options.thetas_deg.size(), gradients.size(), axes_of(points));
+  for (std::size_t row = 0; row < gradients.size(); ++row) {
     for (std::size_t column = 0; column < options.thetas_deg.size(); ++column) {
-      const Panel panel(left + static_cast<double>(column) * (panel_width + gap),
-                        top + static_cast<double>(row) * (panel_height + gap));
-      std::vector<StudyPoint> here;
-      for (const StudyPoint& point : points) {
-        if (point.relief == relief && point.gradient == options.gradients[row] &&
-            point.theta_deg == options.thetas_deg[column])
-          here.push_back(point);
-      }
-      svg += panel.frame(column == 0, column + 1 == options.thetas_deg.size(), row + 1 == options.gradients.size()) +
-             panel.draw(here) + "\n";
-      svg += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='end' font-weight='bold'>s = {}, {}°</text>\n",
-                         panel.across(slowest) - 6, panel.down(largest) + 14, options.gradients[row],
-                         options.thetas_deg[column]);
+      const StudyScene scene{relief, gradients[row], options.thetas_deg[column]};
+      figure.add(column, row, fmt::format("s = {:.3g}, θ = {:.3g}°", scene.gradient, scene.theta_deg),
+                 points_at(points, scene), methods, column + 1 == options.thetas_deg.size());
     }
   }
-  svg += legend_svg(left + plots_width + 22, top + 12);
-  svg += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='middle'>CPU time of one thread (s)</text>\n",
-                     left + 0.5 * plots_width, height - 8);
-  svg += fmt::format(
-      "<text transform='translate(18 {:.1f}) rotate(-90)' text-anchor='middle'>relative L2 error of the "
-      "reflection</text>\n</svg>\n",
-      top + 0.5 * plots_height);
-  return svg;
+  return figure.text(fmt::format("Error against time: {}, {}", relief, setting(options, relief)), legend_of(methods));
+}
+
+std::string study_choices_svg(const StudyOptions& options, const std::vector<StudyPoint>& points) {
+  std::vector<std::string> reliefs = options.families;
+  if (options.scan) reliefs.push_back(options.scan->family);
+  const double theta = options.thetas_deg[std::max<std::size_t>(options.thetas_deg.size(), 2) - 2];
+  const std::vector<StudyQuestion> questions(study_questions().begin() + 1, study_questions().end());
+  std::vector<std::string> all;
+  Figure figure(questions.size(), reliefs.size(), axes_of(points));
+  for (std::size_t row = 0; row < reliefs.size(); ++row) {
+    const std::vector<double> gradients = gradients_of(options, reliefs[row]);
+    const StudyScene scene{reliefs[row], gradients[gradients.size() / 2], theta};
+    for (std::size_t column = 0; column < questions.size(); ++column) {
+      const std::vector<std::string>& methods = methods_for(questions[column]);
+      figure.add(column, row, fmt::format("{}: {}", reliefs[row], in_words(questions[column])),
+                 points_at(points, scene), methods, false);
+      for (const std::string& method : methods)
+        if (std::find(all.begin(), all.end(), method) == all.end()) all.push_back(method);
+    }
+  }
+  return figure.text(
+      fmt::format("What else one may choose: s = {:.3g} (scan: its own), θ = {:.3g}°, {}",
+                  options.gradients[options.gradients.size() / 2], theta, setting(options, reliefs.front())),
+      legend_of(all));
 }
 
 }  // namespace mezzotint

@@ -58,6 +58,12 @@ bool nothing_can_be_met_twice(const PathTracer::ReliefFacts& facts, const Direct
   return way_in > tilt && lowest_way_out > tilt;
 }
 
+// What the dense splat can be made of; a patch without a period and an absorbing medium are always traced.
+bool splat_is_possible(const HeightField& field, const Material& material) {
+  const auto* clear = std::get_if<Dielectric>(&material);
+  return field.periodic() && (clear == nullptr || clear->absorption_per_um == 0.0);
+}
+
 std::uint64_t pilot_paths(const HeightField& field) {
   return std::clamp<std::uint64_t>(2 * field.grid().size() / 64, least_pilot, most_pilot);
 }
@@ -162,7 +168,7 @@ Bsdf simulate_auto(const HeightField& field, PathTracer& tracer, const LadderOpt
     if (out != nullptr) *out = choice;
     return std::move(bsdf);
   };
-  if (field.periodic() && steepness < control_variate_limit) {
+  if (splat_is_possible(field, options.material) && steepness < control_variate_limit) {
     Bsdf slopes = tracer.splat(tracing);
     if (nothing_can_be_met_twice(facts, options.incidence)) {
       choice.forecasts.push_back({Rung::Slopes, 0.0,
