@@ -3,6 +3,7 @@
 
 #include "experiments/command_line/command.h"
 #include "experiments/command_line/option_checks.h"
+#include "experiments/report/bsdf_page.h"
 #include "experiments/version.h"
 #include "forward/base/quantity.h"
 #include "forward/ladder/ladder.h"
@@ -17,6 +18,7 @@ namespace {
 struct BsdfArguments {
   std::string input;
   std::string output;
+  std::string report;
   std::vector<double> incidence;
   std::string material = "dielectric:1.5";
   std::string model = "paths";
@@ -103,6 +105,7 @@ Bsdf compute(const BsdfArguments& arguments, const CommandContext& context) {
   require(arguments.incidence[0] >= 0.0 && arguments.incidence[0] <= 89.0,
           "--incidence: the light comes from above, THETA from 0 to 89; a lower ray would cross the relief for ever");
   require_folder_of(arguments.output);
+  if (!arguments.report.empty()) require_folder_of(arguments.report);
   const SurfaceFile surface = read_surface(arguments.input);
   const std::uint64_t seed = context.common.seed >= 0 ? static_cast<std::uint64_t>(context.common.seed) : 1;
   Bsdf bsdf = by_model(arguments, surface.field, tracing_options(arguments, seed), context.progress);
@@ -122,10 +125,18 @@ std::string words_of(const Bsdf& bsdf) {
   return choice.empty() ? "" : "\n" + choice;
 }
 
+void write_page(const BsdfArguments& arguments, const Bsdf& bsdf, double error) {
+  if (arguments.report.empty()) return;
+  const BsdfPageOptions options{std::filesystem::path(arguments.input).filename().string(), tolerance_of(arguments),
+                                error};
+  write_report(bsdf_page(bsdf, options), arguments.report);
+}
+
 void add_arguments(CLI::App& app, BsdfArguments& arguments) {
   app.add_option("HEIGHT", arguments.input, "Surface file (.al3d, .x3p, .gwy) without missing samples; levelled")
       ->required();
   app.add_option("--output,-o", arguments.output, "EXR to write")->required();
+  app.add_option("--report", arguments.report, "HTML page to write too: maps, energy, error while tracing, choice");
   app.add_option("--incidence", arguments.incidence, "THETA,PHI of the light in degrees")
       ->delimiter(',')
       ->expected(2)
@@ -175,6 +186,7 @@ Command add_bsdf(CLI::App& program) {
             const Bsdf bsdf = compute(*arguments, context);
             write_exr(bsdf, arguments->output);
             const double error = relative_error(bsdf.grid, bsdf.reflection);
+            write_page(*arguments, bsdf, error);
             const Estimate& albedo = bsdf.energy.reflected;
             context.print(
                 {{"written", arguments->output},

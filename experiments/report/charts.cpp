@@ -109,6 +109,24 @@ json point_layer(const Legend& legend, const json& x, const json& y, const Chart
           {"encoding", {{"x", x}, {"y", y}, {"color", legend.colour()}, {"tooltip", tooltip(axes)}}}};
 }
 
+// A line across the chart, with its name. Data of its own: it would be drawn once for each row of the chart's.
+void add_tolerance(json& layers, double tolerance) {
+  const json row = values({json{{"tolerance", tolerance}}});
+  const json place = {{"y", {{"field", "tolerance"}, {"type", "quantitative"}}}};
+  layers.push_back(
+      {{"data", row}, {"mark", {{"type", "rule"}, {"color", "$met"}, {"strokeDash", {5, 4}}}}, {"encoding", place}});
+  layers.push_back({{"data", row},
+                    {"mark",
+                     {{"type", "text"},
+                      {"text", "tolerance"},
+                      {"color", "$met"},
+                      {"align", "left"},
+                      {"baseline", "bottom"},
+                      {"dy", -4},
+                      {"x", 4}}},
+                    {"encoding", place}});
+}
+
 Panel with_sentence(Panel panel, const std::string& sentence) {
   panel.caption += (panel.caption.empty() ? "" : " ") + sentence;
   return panel;
@@ -183,6 +201,7 @@ json line_chart(const Panel& panel, const ChartAxes& axes, const std::vector<Ser
   if (banded) layers.push_back(band_layer(legend, x, y));
   layers.push_back(line_layer(legend, x, y));
   layers.push_back(point_layer(legend, x, y, axes, longest <= 16));
+  if (axes.tolerance) add_tolerance(layers, *axes.tolerance);
   json chart = specification(std::move(layers));
   chart["data"] = values(std::move(rows));
   return vega_lite_chart(banded ? with_sentence(panel, "Bands show ± 1 standard error.") : panel, std::move(chart));
@@ -211,20 +230,7 @@ json search_history(const Panel& panel, const std::vector<double>& objectives, s
       {"mark", {{"type", "line"}, {"interpolate", "step-after"}, {"color", "$series-1"}, {"strokeWidth", 2.25}}},
       {"encoding", {{"x", x}, {"y", best}}}};
   json layers = {std::move(evaluated), std::move(course)};
-  if (tolerance) {
-    const json datum = {{"datum", *tolerance}};
-    layers.push_back(
-        {{"mark", {{"type", "rule"}, {"color", "$met"}, {"strokeDash", {5, 4}}}}, {"encoding", {{"y", datum}}}});
-    layers.push_back({{"mark",
-                       {{"type", "text"},
-                        {"text", "tolerance"},
-                        {"color", "$met"},
-                        {"align", "left"},
-                        {"baseline", "bottom"},
-                        {"dy", -4},
-                        {"x", 4}}},
-                      {"encoding", {{"y", datum}}}});
-  }
+  if (tolerance) add_tolerance(layers, *tolerance);
   json chart = specification(std::move(layers));
   chart["data"] = values(history_rows(objectives));
   return vega_lite_chart(with_sentence(panel, "Dots are evaluations; the line is the best so far."), std::move(chart));

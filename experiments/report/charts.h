@@ -25,6 +25,7 @@ struct ChartAxes {
   std::string y_title;
   bool log_x = false;  ///< values that are not positive are then left out
   bool log_y = false;
+  std::optional<double> tolerance;  ///< of y; drawn as a line
 };
 
 /// Curves with bands of ± 1 standard error.

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "experiments/report/bsdf_components.h"
 #include "experiments/report/components.h"
 #include "experiments/run/report_page.h"
 
@@ -40,6 +41,21 @@ nlohmann::json difference_table(const RunResults& results) {
       {"incidence", "printed to target", "noise floor", "own shape", "slopes", "albedo"}, rows);
 }
 
+// One chart a direction of the light; none where no map took paths.
+void add_convergence(const RunResults& results, double tolerance, Section& section) {
+  for (const auto& r : results.incidences) {
+    std::vector<Series> curves = {convergence_of("predicted", r.predicted), convergence_of("printed", r.printed),
+                                  convergence_of("measured again", r.measured)};
+    if (r.traced_target) curves.push_back(convergence_of("target (scan)", *r.traced_target));
+    const auto chart = convergence_chart(
+        {.title = "Error of the maps while they were traced, " + in_degrees(r.incidence),
+         .caption = "Relative standard error of the reflection after each pass. A map that took no paths has no curve.",
+         .span = Span::Half},
+        curves, tolerance);
+    if (chart) section.components.push_back(*chart);
+  }
+}
+
 }  // namespace
 
 Section lobe_section(const Experiment& experiment, const RunResults& results) {
@@ -67,6 +83,7 @@ Section lobe_section(const Experiment& experiment, const RunResults& results) {
       lobe_viewer({.title = "The lobes in space",
                    .caption = in_degrees(results.incidences.front().incidence) + "; the target as wires."},
                   lobes));
+  add_convergence(results, experiment.simulation.tolerance, section);
   return section;
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double height = 480.0, smallest = 1e-4, largest = 3.0;
+constexpr double height = 480.0, smallest = 1e-4, largest = 10.0;
 // Room to the right of the last point, for the names.
 constexpr double room_for_names = 12.0;
 
@@ -48,7 +48,6 @@ json rows_of(const StudyOptions& options, const std::vector<StudyPoint>& points)
     row["high"] = row.at("relative_l2").get<double>() + error;
     row["early"] = std::max(seconds - spread, 0.5 * seconds);
     row["late"] = seconds + spread;
-    if (row.contains("tolerance")) row["label"] = fmt::format("auto, {:.3g} %", 100.0 * row["tolerance"].get<double>());
   }
   return rows;
 }
@@ -57,43 +56,72 @@ double place_of(double error) {
   return std::log(largest / std::clamp(error, smallest, largest)) / std::log(largest / smallest) * height;
 }
 
-// The names of the lines at their right ends, none over another.
+/// What a reader may see at once: one scene, one question.
+struct View {
+  StudyScene scene;
+  StudyQuestion question;
+};
+
+// The points that are named: the last of each method, and what `auto` chose.
+std::vector<const StudyPoint*> named_points(const View& view, const std::vector<StudyPoint>& points) {
+  std::vector<std::string> methods = methods_for(view.question);
+  methods.emplace_back(plain_method);
+  std::vector<const StudyPoint*> list;
+  for (const StudyPoint& point : points) {
+    if (!(point.scene == view.scene)) continue;
+    const bool asked = std::find(methods.begin(), methods.end(), point.method) != methods.end();
+    const auto same =
+        std::find_if(list.begin(), list.end(), [&](const StudyPoint* p) { return p->method == point.method; });
+    if (point.tolerance || (asked && same == list.end()))
+      list.push_back(&point);
+    else if (asked && point.samples > (*same)->samples)
+      *same = &point;
+  }
+  return list;
+}
+
+std::string label_of(const StudyPoint& point) {
+  return point.tolerance ? fmt::format("auto, {:.3g} %", 100.0 * *point.tolerance) : point.method;
+}
+
+// Names at the right ends of lines, none over another.
+void add_names(const View& view, const std::vector<StudyPoint>& points, json& rows) {
+  constexpr double distance = 16.0, margin = 8.0;
+  const std::vector<const StudyPoint*> named = named_points(view, points);
+  std::vector<double> wanted;
+  for (const StudyPoint* point : named) wanted.push_back(place_of(std::max(point->error, point->floor)));
+  const std::vector<double> places = label_places(wanted, distance, height - margin);
+  for (std::size_t k = 0; k < named.size(); ++k) {
+    rows.push_back({{"relief", view.scene.relief},
+                    {"rms_gradient", view.scene.gradient},
+                    {"theta_deg", view.scene.theta_deg},
+                    {"questions", {in_words(view.question)}},
+                    {"method", named[k]->method},
+                    {"label", label_of(*named[k])},
+                    {"seconds", named[k]->seconds},
+                    {"shown", largest * std::pow(smallest / largest, places[k] / height)}});
+  }
+}
+
 json names_of(const StudyOptions& options, const std::vector<StudyPoint>& points) {
   json rows = json::array();
-  for (const StudyScene& scene : scenes_of(options)) {
-    for (const StudyQuestion question : study_questions()) {
-      std::vector<std::string> methods = methods_for(question);
-      methods.emplace_back(plain_method);
-      std::vector<const StudyPoint*> last;
-      for (const std::string& method : methods) {
-        const StudyPoint* found = nullptr;
-        for (const StudyPoint& point : points)
-          if (point.scene == scene && point.method == method && (found == nullptr || point.samples > found->samples))
-            found = &point;
-        if (found != nullptr) last.push_back(found);
-      }
-      std::vector<double> wanted;
-      for (const StudyPoint* point : last) wanted.push_back(place_of(std::max(point->error, point->floor)));
-      const std::vector<double> places = label_places(wanted, 16.0, height - 8.0);
-      for (std::size_t k = 0; k < last.size(); ++k) {
-        rows.push_back({{"relief", scene.relief},
-                        {"rms_gradient", scene.gradient},
-                        {"theta_deg", scene.theta_deg},
-                        {"questions", {in_words(question)}},
-                        {"method", last[k]->method},
-                        {"seconds", last[k]->seconds},
-                        {"shown", largest * std::pow(smallest / largest, places[k] / height)}});
-      }
-    }
-  }
+  for (const StudyScene& scene : scenes_of(options))
+    for (const StudyQuestion question : study_questions()) add_names({scene, question}, points, rows);
   return rows;
+}
+
+json decades(double low, double high) {
+  json list = json::array();
+  for (double at = std::ceil(std::log10(low) - 1e-9); at <= std::log10(high); at += 1.0)
+    list.push_back(std::pow(10.0, at));
+  return list;
 }
 
 json axis(const char* field, const char* title, double low, double high) {
   return {{"field", field},
           {"type", "quantitative"},
           {"title", title},
-          {"axis", {{"format", "~g"}, {"grid", true}, {"tickCount", 6}}},
+          {"axis", {{"format", "~g"}, {"grid", true}, {"values", decades(low, high)}}},
           {"scale", {{"type", "log"}, {"domain", {low, high}}, {"clamp", true}}}};
 }
 
@@ -109,6 +137,7 @@ json scale_of(bool shapes) {
       range.push_back(colour == "#000000" ? "$ink" : colour);
   };
   add(plain_method);
+  add(auto_method);
   add(moments_method);
   add(slopes_method);
   for (const PathMethod& method : path_methods())
@@ -185,17 +214,11 @@ struct Layers {
               {"strokeWidth", 1.2}}},
             {"encoding", {{"x", x}, {"y", y}, {"tooltip", tooltip()}}}};
   }
-  [[nodiscard]] json chosen_names() const {
-    return {
-        {"transform", {{{"filter", "datum.method == 'auto'"}}}},
-        {"mark", {{"type", "text"}, {"align", "left"}, {"dx", 11}, {"dy", -9}, {"fontWeight", 600}, {"color", "$ink"}}},
-        {"encoding", {{"x", x}, {"y", y}, {"text", {{"field", "label"}}}}}};
-  }
   [[nodiscard]] json names(const json& rows, const json& filter) const {
     return {{"data", {{"values", rows}}},
             {"transform", {filter}},
-            {"mark", {{"type", "text"}, {"align", "left"}, {"dx", 12}, {"fontWeight", 500}}},
-            {"encoding", {{"x", x}, {"y", y}, {"text", {{"field", "method"}}}, {"color", by_method(false)}}}};
+            {"mark", {{"type", "text"}, {"align", "left"}, {"baseline", "middle"}, {"dx", 12}, {"fontWeight", 500}}},
+            {"encoding", {{"x", x}, {"y", y}, {"text", {{"field", "label"}}}, {"color", by_method(false)}}}};
   }
 };
 
@@ -229,7 +252,7 @@ json study_chart(const StudyOptions& options, const std::vector<StudyPoint>& poi
       {"height", height},
       {"layer",
        {layers.floor(), layers.front(), layers.lines(), layers.bars(false), layers.bars(true), layers.marks(),
-        layers.names(names_of(options, points), filter), layers.chosen(), layers.chosen_names()}}};
+        layers.names(names_of(options, points), filter), layers.chosen()}}};
   return vega_lite_chart(
       {.title = "Error against time",
        .caption =

@@ -49,7 +49,7 @@ public:
       const double at = across(std::pow(10.0, power));
       svg += line("grid", at, place_.y, at, bottom());
       // The next panel's first number stands where this one's last would.
-      if (place_.numbers_below && (power < decade(axes_.slowest) || place_.names_right))
+      if (place_.numbers_below && (power < decade(axes_.slowest) || place_.last_column))
         svg += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>", at, bottom() + 15,
                            power_of_ten(power));
     }
@@ -72,8 +72,8 @@ public:
   [[nodiscard]] std::string frame(const std::string& title) const {
     return fmt::format(
         "<rect x='{:.1f}' y='{:.1f}' width='{}' height='{}' class='frame'/><text x='{:.1f}' y='{:.1f}' "
-        "text-anchor='end' class='halo' font-weight='bold'>{}</text>",
-        place_.x, place_.y, place_.width, place_.height, right() - 6, place_.y + 15, escaped(title));
+        "font-weight='bold'>{}</text>",
+        place_.x, place_.y, place_.width, place_.height, place_.x, place_.y - 6, escaped(title));
   }
 
   static std::string line(const char* kind, double x1, double y1, double x2, double y2) {
@@ -137,9 +137,29 @@ std::string stars(const Panel& panel, const Points& points) {
   std::string svg;
   for (const StudyPoint& point : points_of(points, auto_method)) {
     const double x = panel.across(point.seconds), y = panel.down(point);
+    const bool at_the_edge = x > panel.right() - 34.0;
     svg += star(style_of(auto_method), x, y);
-    svg += fmt::format("<text x='{:.1f}' y='{:.1f}' class='halo' font-size='9'>{:.3g} %</text>", x + 8, y - 5,
+    svg += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='{}' class='halo' font-size='9.5'>{:.3g} %</text>",
+                       at_the_edge ? x - 9 : x + 9, y - 5, at_the_edge ? "end" : "start",
                        100.0 * point.tolerance.value_or(0.0));
+  }
+  return svg;
+}
+
+// A method with a single point has its name beside it.
+std::string name_beside(const Panel& panel, const StudyPoint& point, const char* colour) {
+  return fmt::format("<text x='{:.1f}' y='{:.1f}' class='halo' font-size='9.5' fill='{}'>{}</text>",
+                     panel.across(point.seconds) + 6, panel.down(point) - 5, colour, escaped(point.method));
+}
+
+std::string key_of(const Panel& panel, double left, const std::vector<std::string>& methods) {
+  std::string svg;
+  double y = panel.bottom() - 9.0;
+  for (auto method = methods.rbegin(); method != methods.rend(); ++method, y -= 14.0) {
+    const StudyStyle& style = style_of(*method);
+    svg +=
+        svg_mark(style, left + 12, y - 4) + fmt::format("<text x='{:.1f}' y='{:.1f}' class='halo' fill='{}'>{}</text>",
+                                                        left + 21, y, style.colour, escaped(*method));
   }
   return svg;
 }
@@ -216,6 +236,7 @@ std::string svg_panel(const PanelPlace& place, const PanelAxes& axes, const std:
   if (points.empty()) return panel.grid() + panel.frame(title);
   std::string svg = panel.floor(points.front().floor) + panel.grid() + front(panel, points);
   std::vector<Name> ends;
+  std::string single_names;
   std::vector<std::string> drawn = {plain_method};
   drawn.insert(drawn.end(), methods.begin(), methods.end());
   for (const std::string& method : drawn) {
@@ -223,10 +244,14 @@ std::string svg_panel(const PanelPlace& place, const PanelAxes& axes, const std:
     if (here.empty()) continue;
     const StudyStyle& style = style_of(method);
     svg += series(panel, here, style);
-    ends.push_back({method, style.colour, panel.across(here.back().seconds), panel.down(here.back())});
+    if (here.size() > 1)
+      ends.push_back({method, style.colour, panel.across(here.back().seconds), panel.down(here.back())});
+    else
+      single_names += name_beside(panel, here.back(), style.colour);
   }
-  svg += stars(panel, points) + panel.frame(title);
+  svg += single_names + stars(panel, points) + panel.frame(title);
   if (place.names_right) svg += names(panel, ends);
+  if (place.key) svg += key_of(panel, place.x, methods);
   return svg + "\n";
 }
 

@@ -19,16 +19,17 @@ namespace mezzotint {
 
 /// What the axes of all panels of a figure reach over, both logarithmic.
 struct PanelAxes {
-  double fastest = 1e-4, slowest = 10.0;  ///< s
-  double smallest = 1e-4, largest = 3.0;  ///< relative L2
+  double fastest = 1e-4, slowest = 10.0;   ///< s
+  double smallest = 1e-4, largest = 10.0;  ///< relative L2
 };
 /// Whole decades of time about all points.
 [[nodiscard]] PanelAxes axes_of(const std::vector<StudyPoint>& points);
 
-/// Where a panel stands in the figure, and what is written on its sides.
+/// Where a panel stands in the figure, and what is written on its sides; `key`: signs and names in its lower left
+/// corner.
 struct PanelPlace {
   double x = 0.0, y = 0.0, width = 230.0, height = 190.0;
-  bool numbers_left = true, numbers_below = true, names_right = true;
+  bool numbers_left = true, numbers_below = true, last_column = true, names_right = true, key = false;
 };
 
 /// One scene: error against time of some methods, the Pareto front, what `auto` chose, and what cannot be told.

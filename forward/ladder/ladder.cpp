@@ -58,10 +58,20 @@ bool nothing_can_be_met_twice(const PathTracer::ReliefFacts& facts, const Direct
   return way_in > tilt && lowest_way_out > tilt;
 }
 
-// What the dense splat can be made of; a patch without a period and an absorbing medium are always traced.
-bool splat_is_possible(const HeightField& field, const Material& material) {
+bool absorbs(const Material& material) {
   const auto* clear = std::get_if<Dielectric>(&material);
-  return field.periodic() && (clear == nullptr || clear->absorption_per_um == 0.0);
+  return clear != nullptr && clear->absorption_per_um > 0.0;
+}
+
+// The dense splat is of one period, and does not know how far light goes within the medium.
+bool splat_is_possible(const HeightField& field, const Material& material) {
+  return field.periodic() && !absorbs(material);
+}
+
+std::string why_paths(const HeightField& field, const Material& material) {
+  const std::string error = "its own standard error";
+  if (!field.periodic()) return error + "; a patch that is no period of a pattern is always traced";
+  return absorbs(material) ? error + "; a medium that absorbs is always traced" : error;
 }
 
 std::uint64_t pilot_paths(const HeightField& field) {
@@ -187,10 +197,7 @@ Bsdf simulate_auto(const HeightField& field, PathTracer& tracer, const LadderOpt
   tracing.tolerance = options.tolerance;
   Bsdf paths = tracer.trace(tracing, progress);
   const double error = relative_error(options.grid, paths.reflection);
-  const char* reason = field.periodic() ? "its own standard error"
-                                        : "its own standard error; a patch that is no period of "
-                                          "a pattern is always traced";
-  choice.forecasts.push_back({Rung::Paths, error, reason});
+  choice.forecasts.push_back({Rung::Paths, error, why_paths(field, options.material)});
   return finish(std::move(paths));
 }
 

@@ -48,9 +48,13 @@ struct Choice {
 /// The cheapest rung whose forecast meets the tolerance, run to that tolerance.
 ///
 /// How       A relief that is nowhere steep enough to shadow or to be met twice needs no ray: `Slopes` is exact. For
-///           others a pilot of paths measures what the splat leaves out. `Moments` is never taken where there is a
+///           others a pilot of paths measures what the splat leaves out. A mirrored patch and an absorbing medium have
+///           no splat, and are always traced. `Moments` is never taken where there is a
 ///           relief: its lobe costs more than the splat (60 reliefs of 256²: 3 ms and up, against 1.5 to 2), which is
 ///           nearer. The splat is kept for `Paths`, which corrects it.
+/// Measured  60 scenes drawn at random (tests/benchmark/auto_study.cpp: eight families of reliefs, s = 0.03 … 1, 0 …
+///           85°, six materials) at 5 % and 1 %: true error within the tolerance in all; time over that of the cheapest
+///           rung that met it 1.04 and 1.03 in the median, 3.7 and 5.0 at worst, where both took milliseconds.
 /// Result    provenance "model" (the rung), "choice" (why, in words), "predicted_error", and "warnings".
 /// @throws   what PathTracer::trace throws.
 [[nodiscard]] Bsdf simulate_auto(const HeightField& field, PathTracer& tracer, const LadderOptions& options,

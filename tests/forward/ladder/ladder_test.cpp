@@ -51,6 +51,21 @@ TEST(Ladder, TracesWhereTheSplatIsWrong) {
   EXPECT_NE(bsdf.provenance.at("choice").find("slopes: predicted error"), std::string::npos);
 }
 
+TEST(Ladder, TracesWhatHasNoSplat) {
+  const HeightField field = test::random_relief(64, 0.2);
+  PathTracer tracer(field);
+  Choice choice;
+  const Bsdf absorbing = simulate_auto(field, tracer, options_at(30.0, 0.05, Dielectric{1.5, 0.1}), {}, &choice);
+  EXPECT_EQ(choice.rung, Rung::Paths);
+  EXPECT_GT(absorbing.energy.absorbed.value, 0.0);
+  EXPECT_NE(absorbing.provenance.at("choice").find("a medium that absorbs"), std::string::npos);
+  const HeightField patch(field.grid(), Continuation::Mirrored, {field.heights_um().begin(), field.heights_um().end()});
+  PathTracer patch_tracer(patch);
+  const Bsdf mirrored = simulate_auto(patch, patch_tracer, options_at(30.0, 0.05), {}, &choice);
+  EXPECT_EQ(choice.rung, Rung::Paths);
+  EXPECT_NE(mirrored.provenance.at("choice").find("no period"), std::string::npos);
+}
+
 TEST(Ladder, ForecastsCoverTheTrueErrorOfTheSplat) {
   for (const double gradient : {0.2, 0.4, 0.6}) {
     for (const double theta : {0.0, 40.0, 60.0}) {

@@ -103,7 +103,7 @@ function legend(tiles) {
   const lit = tiles.some((tile) => tile.map.incidence);
   return h('div', { class: 'legend' }, lit ? [h('span', { class: 'mark-light' }, 'light'),
     h('span', { class: 'mark-mirror' }, 'mirror direction')] : null,
-  h('span', { class: 'mark-ring' }, 'θ = 30°, 60°'));
+  h('span', { class: 'mark-ring' }, 'θ = 30°, 60°; φ every 45°'));
 }
 
 export function directionMaps(data) {

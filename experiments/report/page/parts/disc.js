@@ -47,6 +47,15 @@ function axes() {
     svg('text', { x: 1.085, y: 0.025 }, 'x'), svg('text', { x: 0, y: -1.065 }, 'y'));
 }
 
+// Rings of θ = 30° and 60°, and spokes of φ every 45°. The spokes leave the middle free: the lobe may be there.
+const RINGS = [0.5, Math.sqrt(0.75)];
+
+function grid() {
+  const spokes = Array.from({ length: 8 }, (_, k) => [Math.cos(k * Math.PI / 4), Math.sin(k * Math.PI / 4)]);
+  return [RINGS.map((r) => svg('circle', { class: 'ring', r })),
+    spokes.map(([x, y]) => svg('line', { class: 'ring', x1: RINGS[0] * x, y1: RINGS[0] * y, x2: x, y2: y }))];
+}
+
 function incidenceMarks({ theta_deg, phi_deg }) {
   const r = Math.sin(theta_deg * Math.PI / 180), phi = phi_deg * Math.PI / 180;
   const x = r * Math.cos(phi), y = -r * Math.sin(phi);
@@ -62,7 +71,7 @@ export function discOverlay(incidence) {
   const hair = svg('g', { class: 'hair', visibility: 'hidden' },
     svg('circle', { class: 'halo', r: 0.035 }), svg('circle', { r: 0.035 }));
   const element = svg('svg', { viewBox: `${-EXTENT} ${-EXTENT} ${2 * EXTENT} ${2 * EXTENT}`, 'aria-hidden': 'true' },
-    [0.5, Math.sqrt(0.75)].map((r) => svg('circle', { class: 'ring', r })),
+    grid(),
     svg('circle', { class: 'rim', r: 1 }), axes(), incidence ? incidenceMarks(incidence) : null, hair);
   const probe = (x, y) => {
     hair.setAttribute('visibility', x === undefined ? 'hidden' : 'visible');
