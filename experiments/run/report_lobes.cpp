@@ -47,11 +47,11 @@ void add_convergence(const RunResults& results, double tolerance, Section& secti
     std::vector<Series> curves = {convergence_of("predicted", r.predicted), convergence_of("printed", r.printed),
                                   convergence_of("measured again", r.measured)};
     if (r.traced_target) curves.push_back(convergence_of("target (scan)", *r.traced_target));
-    const auto chart = convergence_chart(
-        {.title = "Error of the maps while they were traced, " + in_degrees(r.incidence),
-         .caption = "Relative standard error of the reflection after each pass. A map that took no paths has no curve.",
-         .span = Span::Half},
-        curves, tolerance);
+    const auto chart = convergence_chart({.title = "Error while tracing, " + in_degrees(r.incidence),
+                                          .caption = "Relative standard error of each map of the reflection, after "
+                                                     "each pass. A map that took no paths has no curve.",
+                                          .span = Span::Half},
+                                         curves, tolerance);
     if (chart) section.components.push_back(*chart);
   }
 }

@@ -39,7 +39,8 @@ std::vector<std::string> run_scatter(const StageContext& context) {
       const auto done = static_cast<double>(outputs.size());
       const std::string note = fmt::format("BSDF {} of {:.0f}: {}", outputs.size() + 1, total, name);
       const Progress inner = [&](const ProgressEvent& event) {
-        report(context.progress, "scatter", (done + event.fraction) / total, note);
+        report(context.progress, "scatter", (done + event.fraction) / total,
+               event.note.empty() ? note : note + ", " + event.note);
       };
       report(inner, "", 0.0);
       outputs.push_back(fmt::format("bsdf_{}_{}.exr", name, i));

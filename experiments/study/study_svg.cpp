@@ -11,7 +11,7 @@ namespace mezzotint {
 namespace {
 
 constexpr double panel_width = 230.0, panel_height = 190.0, gap = 14.0, row_gap = 30.0, left = 74.0, top = 104.0;
-constexpr double least_width = 800.0;  // the legend's
+constexpr double least_width = 880.0;  // the legend's
 
 std::vector<StudyPoint> points_at(const std::vector<StudyPoint>& points, const StudyScene& scene) {
   std::vector<StudyPoint> here;
@@ -94,7 +94,7 @@ private:
 
 std::string legend_of(const std::vector<std::string>& methods) {
   Legend first(50.0), second(74.0);
-  first.add(svg_mark(style_of(plain_method), 0, 0), plain_method);
+  (methods.empty() ? second : first).add(svg_mark(style_of(plain_method), 0, 0), plain_method);
   for (const std::string& method : methods) first.add(svg_mark(style_of(method), 0, 0), method);
   second.add(svg_mark(style_of(auto_method), 0, 0), "what auto chose, at its tolerance");
   second.add("<path d='M-8 0h16' class='front'/>", "Pareto front of all methods");

@@ -146,12 +146,6 @@ std::string stars(const Panel& panel, const Points& points) {
   return svg;
 }
 
-// A method with a single point has its name beside it.
-std::string name_beside(const Panel& panel, const StudyPoint& point, const char* colour) {
-  return fmt::format("<text x='{:.1f}' y='{:.1f}' class='halo' font-size='9.5' fill='{}'>{}</text>",
-                     panel.across(point.seconds) + 6, panel.down(point) - 5, colour, escaped(point.method));
-}
-
 std::string key_of(const Panel& panel, double left, const std::vector<std::string>& methods) {
   std::string svg;
   double y = panel.bottom() - 9.0;
@@ -236,7 +230,6 @@ std::string svg_panel(const PanelPlace& place, const PanelAxes& axes, const std:
   if (points.empty()) return panel.grid() + panel.frame(title);
   std::string svg = panel.floor(points.front().floor) + panel.grid() + front(panel, points);
   std::vector<Name> ends;
-  std::string single_names;
   std::vector<std::string> drawn = {plain_method};
   drawn.insert(drawn.end(), methods.begin(), methods.end());
   for (const std::string& method : drawn) {
@@ -246,10 +239,8 @@ std::string svg_panel(const PanelPlace& place, const PanelAxes& axes, const std:
     svg += series(panel, here, style);
     if (here.size() > 1)
       ends.push_back({method, style.colour, panel.across(here.back().seconds), panel.down(here.back())});
-    else
-      single_names += name_beside(panel, here.back(), style.colour);
   }
-  svg += single_names + stars(panel, points) + panel.frame(title);
+  svg += stars(panel, points) + panel.frame(title);
   if (place.names_right) svg += names(panel, ends);
   if (place.key) svg += key_of(panel, place.x, methods);
   return svg + "\n";

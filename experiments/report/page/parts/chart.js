@@ -15,7 +15,7 @@ function configuration() {
     font: FONT,
     view: { stroke: null },
     axis: { ...text, domainColor: line, tickColor: line, gridColor: line, gridOpacity: 0.7, tickSize: 4,
-      labelPadding: 6, titlePadding: 10 },
+      labelPadding: 6, labelSeparation: 12, titlePadding: 10 },
     axisX: { grid: false },
     axisY: { domain: false, ticks: false },
     legend: { ...text, title: null, orient: 'top', direction: 'horizontal', symbolStrokeWidth: 2.5, symbolSize: 140,
