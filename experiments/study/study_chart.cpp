@@ -89,6 +89,7 @@ void add_names(const View& view, const std::vector<StudyPoint>& points, json& ro
   constexpr double distance = 16.0, margin = 8.0;
   const std::vector<const StudyPoint*> named = named_points(view, points);
   std::vector<double> wanted;
+  wanted.reserve(named.size());
   for (const StudyPoint* point : named) wanted.push_back(place_of(std::max(point->error, point->floor)));
   const std::vector<double> places = label_places(wanted, distance, height - margin);
   for (std::size_t k = 0; k < named.size(); ++k) {
@@ -112,8 +113,8 @@ json names_of(const StudyOptions& options, const std::vector<StudyPoint>& points
 
 json decades(double low, double high) {
   json list = json::array();
-  for (double at = std::ceil(std::log10(low) - 1e-9); at <= std::log10(high); at += 1.0)
-    list.push_back(std::pow(10.0, at));
+  for (int power = static_cast<int>(std::ceil(std::log10(low) - 1e-9)); power <= std::log10(high); ++power)
+    list.push_back(std::pow(10.0, power));
   return list;
 }
 

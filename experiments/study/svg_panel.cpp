@@ -168,6 +168,7 @@ struct Name {
 // Names beside the panel, none over another, with a thin line from each to its own.
 std::string names(const Panel& panel, const std::vector<Name>& list) {
   std::vector<double> wanted;
+  wanted.reserve(list.size());
   for (const Name& name : list) wanted.push_back(name.y);
   const std::vector<double> places = label_places(wanted, 12.5, panel.bottom() - 2.0);
   std::string svg;
