@@ -78,12 +78,14 @@ std::uint64_t pilot_paths(const HeightField& field) {
   return std::clamp<std::uint64_t>(2 * field.grid().size() / 64, least_pilot, most_pilot);
 }
 
-Forecast forecast_slopes(const LadderOptions& options, std::uint64_t paths, const MapEstimate& pilot,
-                         const Bsdf& slopes) {
+Forecast forecast_slopes(const LadderOptions& options, std::uint64_t paths, PathTracer& tracer, const Bsdf& slopes) {
+  // Facets at 45° under light from above send it all to the horizon: nothing to compare with.
   if (!(slopes.energy.reflected.value > 0.0)) {
-    return {Rung::Slopes, 1.0, "no facet sends light straight out: all of it meets the surface again"};
+    return {Rung::Slopes, 1.0, "no facet reflects light upward by itself"};
   }
-  const MapDifference difference = relative_l2(options.grid, pilot, slopes.reflection.mean);
+  PathTracingOptions pilot = tracing_options(options);
+  pilot.samples = paths;
+  const MapDifference difference = relative_l2(options.grid, tracer.trace(pilot).reflection, slopes.reflection.mean);
   const double error = difference.corrected.value + bound * difference.corrected.standard_error;
   return {
       Rung::Slopes, error,
@@ -187,12 +189,8 @@ Bsdf simulate_auto(const HeightField& field, PathTracer& tracer, const LadderOpt
                                               facts.steepest)});
       return finish(std::move(slopes));
     }
-    PathTracingOptions pilot = tracing;
-    pilot.samples = pilot_paths(field);
-    const Bsdf first = tracer.trace(pilot);
-    const Forecast forecast = forecast_slopes(options, pilot.samples, first.reflection, slopes);
-    choice.forecasts.push_back(forecast);
-    if (forecast.error <= options.tolerance) return finish(std::move(slopes));
+    choice.forecasts.push_back(forecast_slopes(options, pilot_paths(field), tracer, slopes));
+    if (choice.forecasts.back().error <= options.tolerance) return finish(std::move(slopes));
   }
   tracing.tolerance = options.tolerance;
   Bsdf paths = tracer.trace(tracing, progress);

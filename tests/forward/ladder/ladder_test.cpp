@@ -66,6 +66,25 @@ TEST(Ladder, TracesWhatHasNoSplat) {
   EXPECT_NE(mirrored.provenance.at("choice").find("no period"), std::string::npos);
 }
 
+TEST(Ladder, TracesRidgesThatSendAllLightToTheHorizon) {
+  // Symmetric ridges of slope 1 under light from above: each facet reflects along the plane, and what comes back was
+  // met twice.
+  const HeightField ridges = test::relief(64, 64, Continuation::Periodic,
+                                          [](double x, double) { return 8.0 - std::abs(std::fmod(x, 16.0) - 8.0); });
+  PathTracer tracer(ridges);
+  Choice choice;
+  const Bsdf bsdf = simulate_auto(ridges, tracer, options_at(0.0, 0.05, Mirror{}), {}, &choice);
+  EXPECT_EQ(choice.rung, Rung::Paths);
+  // A mirror's corner of 90° sends light back where it came from: to the four bins about the normal.
+  const auto areas = projected_solid_angles(bsdf.grid);
+  double back = 0.0;
+  for (const double x : {-1e-6, 1e-6})
+    for (const double y : {-1e-6, 1e-6})
+      back += bsdf.reflection.mean[bsdf.grid.bin_of(x, y)] * areas[bsdf.grid.bin_of(x, y)];
+  EXPECT_NEAR(back, bsdf.energy.reflected.value, 1e-9);
+  EXPECT_GT(back, 0.9);
+}
+
 TEST(Ladder, ForecastsCoverTheTrueErrorOfTheSplat) {
   for (const double gradient : {0.2, 0.4, 0.6}) {
     for (const double theta : {0.0, 40.0, 60.0}) {
