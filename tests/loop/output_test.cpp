@@ -21,8 +21,8 @@ const std::vector<std::string> every_command = {
     "correct relief.gwy -o corrected.gwy --level plane",
     "convert relief.gwy relief.obj",
     "mesh relief.gwy -o mesh.obj",
-    "chart --cells 64 --resolution 8 --gradients 0.1 --incidences 0 -o chart",
-    "bsdf relief.gwy --incidence 20,0 --samples 1e4 -o lobe.exr",
+    "chart --families sinusoid --cells 64 --resolution 8 --gradients 0.1 --incidences 0 -o chart",
+    "bsdf relief.gwy --incidence 20,0 --samples 1e4 -o lobe.exr --report lobe.html",
     "bsdf-table relief.gwy --symmetry isotropic --tolerance 1 --resolution 16 -o table.exr",
     "info table.exr"};
 
