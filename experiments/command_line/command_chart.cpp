@@ -90,8 +90,8 @@ void add_arguments(CLI::App& app, ChartArguments& arguments) {
   app.add_option("--output,-o", arguments.output, "Folder for chart.html, chart.json and the figures (default chart)");
   app.add_option("--material", arguments.material, "As for bsdf (default dielectric:1.5)");
   app.add_option("--families", arguments.families,
-                 "Reliefs, comma separated: gaussian, bumps, sinusoid, ridges, scan (these by default), skewed ridges, "
-                 "folds, plateaus, patch")
+                 "Reliefs, comma separated: gaussian, noise, sinusoid, ridges, scan (these by default), bumps, "
+                 "skewed ridges, folds, plateaus, patch")
       ->delimiter(',')
       ->check(known_relief());
   app.add_option("--scan", arguments.scan,

@@ -10,6 +10,7 @@
 
 #include "forward/base/error.h"
 #include "forward/base/random.h"
+#include "forward/pattern/pattern.h"
 
 namespace mezzotint {
 
@@ -54,6 +55,12 @@ Height waves(const ReliefDraw& draw) {
 }
 
 HeightField gaussian(const ReliefDraw& draw) { return sampled(draw, waves(draw)); }
+
+HeightField noise(const ReliefDraw& draw) {
+  const Noise pattern{.scale = Length::from_um(static_cast<double>(draw.cells) / draw.periods), .seed = draw.seed};
+  return synthesize(pattern, {draw.cells, draw.cells, Length::from_um(1.0), Length::from_um(1.0)}, {},
+                    Continuation::Periodic);
+}
 
 HeightField folds(const ReliefDraw& draw) {
   return sampled(draw, [wave = waves(draw)](double x, double y) { return std::abs(wave(x, y)); });
@@ -124,9 +131,15 @@ struct Family {
 };
 
 const std::vector<Family>& families() {
-  static const std::vector<Family> list = {{"gaussian", gaussian},           {"sinusoid", sinusoid}, {"ridges", ridges},
-                                           {"skewed ridges", skewed_ridges}, {"bumps", bumps},       {"folds", folds},
-                                           {"plateaus", plateaus},           {"patch", patch}};
+  static const std::vector<Family> list = {{"gaussian", gaussian},
+                                           {"noise", noise},
+                                           {"sinusoid", sinusoid},
+                                           {"ridges", ridges},
+                                           {"skewed ridges", skewed_ridges},
+                                           {"bumps", bumps},
+                                           {"folds", folds},
+                                           {"plateaus", plateaus},
+                                           {"patch", patch}};
   return list;
 }
 

@@ -19,7 +19,8 @@ struct ReliefDraw {
 
 /// A relief of a family, heights in any unit: it is scaled to an RMS gradient afterwards (make_study_relief).
 ///
-/// Periodic  "gaussian" (random waves), "sinusoid" (sin·sin), "ridges" (triangular), "skewed ridges", "bumps" (three
+/// Periodic  "gaussian" (random waves), "noise" (sparse convolution noise), "sinusoid" (sin·sin), "ridges"
+/// (triangular), "skewed ridges", "bumps" (three
 ///           octaves of sparse random bumps: noise whose slopes are far from Gaussian), "folds" (|random waves|: sharp
 ///           valleys), "plateaus" (random waves pressed to two levels: flat, with steep steps)
 /// Mirrored  "patch": random waves that do not fit the tile, as of a scan

@@ -19,7 +19,7 @@ double rms_gradient(const HeightField& field) {
 }  // namespace
 
 const std::vector<std::string>& study_families() {
-  static const std::vector<std::string> names = {"gaussian", "bumps", "sinusoid", "ridges"};
+  static const std::vector<std::string> names = {"gaussian", "noise", "sinusoid", "ridges"};
   return names;
 }
 

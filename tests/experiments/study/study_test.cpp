@@ -55,7 +55,7 @@ TEST(StudyRelief, HasTheGradientThatItIsAskedFor) {
 }
 
 TEST(StudyRelief, OfAPeriodicFamilyHasNoSeam) {
-  for (const char* family : {"gaussian", "sinusoid", "bumps", "folds", "plateaus"}) {
+  for (const char* family : {"gaussian", "noise", "sinusoid", "bumps", "folds", "plateaus"}) {
     const HeightField field = draw_relief(family, {.cells = 128, .seed = 5, .periods = 4.0});
     double inside = 0.0, seam = 0.0;
     for (std::size_t row = 0; row < field.rows(); ++row) {
