@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <initializer_list>
 #include <limits>
 #include <string>
@@ -8,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "forward/base/error.h"
+#include "measurement/formats/al3d_layout.h"
 #include "measurement/formats/byte_reader.h"
 #include "measurement/formats/height_assembly.h"
 #include "measurement/formats/parsers.h"
@@ -17,8 +17,8 @@ namespace mezzotint {
 
 namespace {
 
-constexpr std::string_view magic("AliconaImaging\0\r\n", 17);
-constexpr std::size_t key_bytes = 20, value_bytes = 30, tag_bytes = 52;
+using al3d::key_bytes, al3d::magic, al3d::tag_bytes, al3d::value_bytes;
+
 // The invalid value stands as text with fewer digits than a float has.
 constexpr double marker_tolerance = 1.5e-7;
 // No surface has such heights, but every marker seen so far does (±3e15).
@@ -157,11 +157,8 @@ std::map<std::string, std::string> provenance_of(const Tags& tags) {
 
 }  // namespace
 
-bool looks_like_al3d(std::span<const std::byte> bytes) {
-  return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
-}
+bool looks_like_al3d(std::span<const std::byte> bytes) { return begins_with(bytes, magic); }
 
-// Source   no public specification; layout as read by Gwyddion 2.62 and checked against a file of MeasureSuite 5.3.
 SurfaceFile parse_al3d(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   if (!looks_like_al3d(bytes)) throw FileError(path, "byte 0", "an .al3d file begins with \"AliconaImaging\"");
   ByteReader reader(path, bytes);
@@ -174,10 +171,11 @@ SurfaceFile parse_al3d(const std::filesystem::path& path, std::span<const std::b
   std::string assumption;
   const DepthImage depth = locate_depth(path, tags, grid, reader.offset(), bytes, assumption);
   const double marker = invalid_marker(path, tags);
+  const double datum_m = tags.find(al3d::datum_key) == tags.end() ? 0.0 : number_tag(path, tags, al3d::datum_key);
   const auto height_m = [&](std::size_t i) {
     const std::size_t place = i / grid.columns * depth.stride + i % grid.columns * sizeof(float);
     const double z = little_endian<float>(depth.bytes.data() + place);
-    return is_missing(z, marker) ? std::numeric_limits<double>::quiet_NaN() : z;
+    return is_missing(z, marker) ? std::numeric_limits<double>::quiet_NaN() : z + datum_m;
   };
   // The first row is the top of the picture that the instrument shows.
   HeightField field = assemble_heights(path, "depth image", grid, FirstRow::Top, Continuation::Mirrored, height_m);

@@ -8,6 +8,10 @@ namespace mezzotint {
 
 std::string byte_place(std::size_t offset) { return "byte " + std::to_string(offset); }
 
+bool begins_with(std::span<const std::byte> bytes, std::string_view magic) {
+  return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+}
+
 void ByteReader::fail(std::string_view problem) const { throw FileError(*path_, byte_place(offset()), problem); }
 
 std::span<const std::byte> ByteReader::take(std::uint64_t count, std::string_view what) {

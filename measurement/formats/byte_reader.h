@@ -60,6 +60,9 @@ private:
   std::size_t position_ = 0;
 };
 
+/// Whether the bytes begin with these.
+[[nodiscard]] bool begins_with(std::span<const std::byte> bytes, std::string_view magic);
+
 /// "byte 1261"
 [[nodiscard]] std::string byte_place(std::size_t offset);
 

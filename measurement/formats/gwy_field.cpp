@@ -66,16 +66,6 @@ GwyField read_gwy_field(const GwyComponent& component) {
   return field;
 }
 
-std::optional<double> metres_of_unit(std::string_view unit) {
-  if (unit == "m" || unit.empty()) return 1.0;
-  if (unit == "mm") return 1e-3;
-  // Unicode has two: the micro sign and the Greek letter.
-  if (unit == "um" || unit == "\u00b5m" || unit == "\u03bcm") return 1e-6;
-  if (unit == "nm") return 1e-9;
-  if (unit == "pm") return 1e-12;
-  return std::nullopt;
-}
-
 std::string gwy_periodic_entry(std::uint64_t columns, std::uint64_t rows) {
   return fmt::format("periodic, {} x {} samples", columns, rows);
 }

@@ -27,9 +27,6 @@ struct GwyField {
 /// @throws FileError
 [[nodiscard]] GwyField read_gwy_field(const GwyComponent& component);
 
-/// What the unit is in metres: m, mm, µm (or um), nm, pm, and nothing at all for none given.
-[[nodiscard]] std::optional<double> metres_of_unit(std::string_view unit);
-
 /// The entry of /N/meta that says that a field is periodic, and what it says then. The grid is part of it, so
 /// that a crop made with Gwyddion, which keeps the entry, is not taken for periodic.
 inline constexpr std::string_view gwy_continuation_key = "Mezzotint continuation";

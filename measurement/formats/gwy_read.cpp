@@ -58,15 +58,40 @@ ByteReader open_container(const std::filesystem::path& path, std::span<const std
   return reader.take_part(size, "the outermost object");
 }
 
-std::uint32_t first_channel(const std::filesystem::path& path, const ByteReader& container) {
-  std::optional<std::uint32_t> lowest;
+std::vector<std::uint32_t> channels_of(const std::filesystem::path& path, const ByteReader& container) {
+  std::vector<std::uint32_t> channels;
   for_each_component(container, [&](const GwyComponent& component) {
-    const auto channel = channel_of(component);
-    if (channel) lowest = std::min(lowest.value_or(*channel), *channel);
+    if (const auto channel = channel_of(component)) channels.push_back(*channel);
   });
-  if (!lowest)
+  if (channels.empty()) {
     throw FileError(path, "", "holds no height image; a GwyDataField named /0/data (or /1/data, …) is needed");
-  return *lowest;
+  }
+  std::sort(channels.begin(), channels.end());
+  return channels;
+}
+
+std::string list_of(const std::vector<std::uint32_t>& channels) {
+  constexpr std::size_t most_listed = 20;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(channels.size(), most_listed); ++i) {
+    list += fmt::format("{}/{}/data", list.empty() ? "" : ", ", channels[i]);
+  }
+  return channels.size() > most_listed ? list + ", …" : list;
+}
+
+// The one that is asked for, or the first.
+std::uint32_t chosen_channel(const std::filesystem::path& path, const std::vector<std::uint32_t>& channels,
+                             const std::optional<std::uint32_t>& wanted, std::string& assumption) {
+  if (wanted) {
+    if (std::find(channels.begin(), channels.end(), *wanted) != channels.end()) return *wanted;
+    throw FileError(path, fmt::format("/{}/data", *wanted),
+                    fmt::format("there is no such channel; there are {}", list_of(channels)));
+  }
+  if (channels.size() > 1) {
+    add_assumption(assumption, fmt::format("the first of {} channels is read ({}); FILE#/N/data reads another",
+                                           channels.size(), list_of(channels)));
+  }
+  return channels.front();
 }
 
 Channel read_channel(const ByteReader& container, std::uint32_t number) {
@@ -115,18 +140,17 @@ void require_matching_mask(const std::filesystem::path& path, const GwyField& he
 
 }  // namespace
 
-bool looks_like_gwy(std::span<const std::byte> bytes) {
-  return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
-}
+bool looks_like_gwy(std::span<const std::byte> bytes) { return begins_with(bytes, magic); }
 
 // Source   Gwyddion user guide, "Gwyddion native format".
-SurfaceFile parse_gwy(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+SurfaceFile parse_gwy_channel(const std::filesystem::path& path, std::span<const std::byte> bytes,
+                              const std::optional<std::uint32_t>& wanted) {
   const ByteReader container = open_container(path, bytes);
-  const std::uint32_t number = first_channel(path, container);
+  std::string assumption;
+  const std::uint32_t number = chosen_channel(path, channels_of(path, container), wanted, assumption);
   Channel channel = read_channel(container, number);
   const std::string place = fmt::format("/{}/data", number);
   const GwyField& heights = *channel.heights;
-  std::string assumption;
   const double lateral = checked_unit(path, heights, heights.lateral_unit, "lateral", assumption);
   const double vertical = checked_unit(path, heights, heights.value_unit, "height", assumption);
   const Grid grid =
@@ -143,6 +167,10 @@ SurfaceFile parse_gwy(const std::filesystem::path& path, std::span<const std::by
   // Gwyddion shows the first row on top.
   HeightField field = assemble_heights(path, place, grid, FirstRow::Top, continuation, height_m);
   return {std::move(field), "gwy", channel.title, std::move(channel.meta), assumption};
+}
+
+SurfaceFile parse_gwy(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  return parse_gwy_channel(path, bytes, std::nullopt);
 }
 
 }  // namespace mezzotint

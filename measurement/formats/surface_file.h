@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "forward/surface/height_field.h"
 
@@ -11,7 +13,7 @@ namespace mezzotint {
 /// A surface as it stood in a file.
 struct SurfaceFile {
   HeightField field;
-  std::string format;  ///< "al3d", "x3p", "gwy"
+  std::string format;  ///< "al3d", "x3p", "gwy", "sur", "sdf", "opd", "png", "tiff", "exr", "csv", "xyz"
   std::string title;
   /// What the file says of itself (instrument, date, creator), for `info` and for reports.
   std::map<std::string, std::string> provenance;
@@ -19,14 +21,30 @@ struct SurfaceFile {
   std::string assumption;
 };
 
+struct ReadOptions {
+  /// Gray level of the quality map, 1 … 255, below which a sample is missing. For Alicona's folders alone.
+  std::optional<int> min_quality;
+};
+
 /// Reads a surface; the format is found by the file's first bytes, not by its name.
 ///
 /// Heights become micrometres with their mean offset taken out in double first (HeightField::datum);
 /// missing samples become NaN; formats whose row 0 is on top are flipped, so that a ridge at +30° stays
-/// at +30°. Continuation is Mirrored, unless our own .gwy says that the field is periodic.
+/// at +30°. Continuation is Mirrored, unless our own .gwy or a sidecar says that the field is periodic.
+///
+/// @param path  a file; a folder of Alicona's (dem.al3d, qualitymap.bmp, info.xml); or FILE#/N/data for one of
+///              several channels of a .gwy. Pictures (PNG, TIFF, OpenEXR) and plain text (names that end in .csv
+///              or .xyz, since text has no first bytes) have their sizes in a sidecar (sidecar.h).
 /// @throws FileError for an unknown format, and whenever a file contradicts itself, ends early or asks for
 ///         more samples than it has bytes for; sizes are checked before memory is taken.
-[[nodiscard]] SurfaceFile read_surface(const std::filesystem::path& path);
+[[nodiscard]] SurfaceFile read_surface(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// The endings of what read_surface reads, for help texts.
+inline constexpr std::string_view read_surface_formats =
+    ".al3d (or its folder), .x3p, .gwy, .sur, .sdf, .opd, and with a sidecar .png, .tif, .exr, .csv, .xyz";
+
+/// Whether a picture is a relief: it has a sidecar.
+[[nodiscard]] bool has_sidecar(const std::filesystem::path& picture);
 
 [[nodiscard]] SurfaceFile read_al3d(const std::filesystem::path& path);
 [[nodiscard]] SurfaceFile read_x3p(const std::filesystem::path& path);

@@ -47,6 +47,43 @@ std::optional<double> to_number(std::string_view text) { return whole_number<dou
 
 std::optional<std::uint64_t> to_count(std::string_view text) { return whole_number<std::uint64_t>(text); }
 
+std::optional<double> metres_of_unit(std::string_view unit) {
+  if (unit == "m" || unit.empty()) return 1.0;
+  if (unit == "mm") return 1e-3;
+  // Unicode has two: the micro sign and the Greek letter.
+  if (unit == "um" || unit == "\u00b5m" || unit == "\u03bcm") return 1e-6;
+  if (unit == "nm") return 1e-9;
+  if (unit == "pm") return 1e-12;
+  return std::nullopt;
+}
+
+namespace {
+
+std::string latin1_to_utf8(std::string_view text) {
+  std::string utf8;
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x80) {
+      utf8.push_back(c);
+    } else {
+      utf8.push_back(static_cast<char>(0xC0 | code >> 6));
+      utf8.push_back(static_cast<char>(0x80 | (code & 0x3F)));
+    }
+  }
+  return utf8;
+}
+
+}  // namespace
+
+std::string utf8_or_latin1(std::string_view text) {
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::size_t length = character_length(rest);
+    if (length == 0) return latin1_to_utf8(text);
+    rest.remove_prefix(length);
+  }
+  return std::string(text);
+}
+
 std::string clean_text(std::string_view text) {
   text = trimmed(text);
   std::string clean;

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include <fmt/format.h>
@@ -107,9 +106,7 @@ HeightField assemble(const std::filesystem::path& path, const X3pArchive& archiv
 
 }  // namespace
 
-bool looks_like_x3p(std::span<const std::byte> bytes) {
-  return bytes.size() >= 4 && std::memcmp(bytes.data(), "PK\x03\x04", 4) == 0;
-}
+bool looks_like_x3p(std::span<const std::byte> bytes) { return begins_with(bytes, "PK\x03\x04"); }
 
 SurfaceFile parse_x3p(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   if (!looks_like_x3p(bytes)) throw FileError(path, "byte 0", "an .x3p file is a zip archive and begins with \"PK\"");

@@ -199,6 +199,28 @@ TEST(Gwy, WritesTheBytesThatTheFormatAsksFor) {
   EXPECT_EQ(bytes_of(folder / "field.gwy"), expected.file());
 }
 
+TEST(Gwy, OneOfSeveralChannelsIsReadByItsName) {
+  const auto channel = [](double height_m) { return gwy_field(1, 1, 1e-6, 1e-6, {height_m}); };
+  const auto file = GwyBuilder()
+                        .object("/12/data", "GwyDataField", channel(12e-6))
+                        .object("/1/data", "GwyDataField", channel(1e-6))
+                        .object("/1/mask", "GwyDataField", gwy_field(1, 1, 1, 1, {1.0}))
+                        .object("/3/data", "GwyDataField", channel(3e-6));
+  const test::TemporaryFolder folder;
+  write_file(folder / "scan.gwy", file.file());
+  const SurfaceFile first = read_surface(folder / "scan.gwy");
+  EXPECT_EQ(first.field.missing_count(), 1U);
+  EXPECT_NE(first.assumption.find("the first of 3 channels is read (/1/data, /3/data, /12/data)"), std::string::npos);
+  const SurfaceFile third = read_surface(folder / "scan.gwy#/3/data");
+  EXPECT_NEAR(third.field.datum().um(), 3.0, 1e-12);
+  EXPECT_EQ(third.assumption, "");
+  EXPECT_EQ(third.field.missing_count(), 0U);  // the mask is that of another channel
+  EXPECT_NEAR(read_surface(folder / "scan.gwy#/12").field.datum().um(), 12.0, 1e-12);
+  for (const char* name : {"scan.gwy#/2/data", "scan.gwy#/x/data", "scan.gwy#/", "scan.gwy#/3/mask"}) {
+    EXPECT_THROW(static_cast<void>(read_surface(folder / name)), FileError) << name;
+  }
+}
+
 TEST(Gwy, RefusesToWriteIntoAFolderThatIsNotThere) {
   const test::TemporaryFolder folder;
   EXPECT_THROW(write_gwy(awkward_field(Continuation::Mirrored), "", {}, folder / "missing" / "field.gwy"), DeviceError);

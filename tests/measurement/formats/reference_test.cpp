@@ -82,7 +82,7 @@ void expect_grid(const Row& row, const HeightField& field) {
 // Gwyddion's r0 is the first row of the file. Where the sample is missing it lists a filled-in value.
 void expect_heights(const Row& row, const SurfaceFile& surface) {
   const HeightField& field = surface.field;
-  const bool first_row_is_top = surface.format == "gwy";
+  const bool first_row_is_top = surface.format == "gwy" || surface.format == "opd";
   const auto at = [&](std::size_t column, std::size_t file_row) {
     return field.at(column, first_row_is_top ? field.rows() - 1 - file_row : file_row);
   };
@@ -105,7 +105,8 @@ TEST(GwyddionReference, EveryFileIsReadAlikeRawAndLevelled) {
   std::size_t compared = 0;
   for (const Row& row : read_table(folder / "reference_gwyddion_2.62.csv")) {
     const std::filesystem::path path = folder / row.at("file");
-    if (path.extension() != ".x3p" && path.extension() != ".gwy") continue;
+    // Gwyddion takes the points of this file that were not measured for heights.
+    if (path.filename() == "sur-2.sur") continue;
     SCOPED_TRACE(row.at("file") + ", " + row.at("levelling"));
     const SurfaceFile surface = read_surface(path);
     EXPECT_EQ("." + surface.format, path.extension());
@@ -115,7 +116,7 @@ TEST(GwyddionReference, EveryFileIsReadAlikeRawAndLevelled) {
     expect_roughness(row, raw ? surface.field : level(surface.field));
     ++compared;
   }
-  EXPECT_EQ(compared, 10U);
+  EXPECT_EQ(compared, 14U);
 }
 
 TEST(GwyddionReference, AFileWithoutUnitsIsTakenForMetresAndSaysSo) {
