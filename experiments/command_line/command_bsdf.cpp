@@ -133,8 +133,7 @@ void write_page(const BsdfArguments& arguments, const Bsdf& bsdf, double error) 
 }
 
 void add_arguments(CLI::App& app, BsdfArguments& arguments) {
-  app.add_option("HEIGHT", arguments.input, "Surface file (.al3d, .x3p, .gwy) without missing samples; levelled")
-      ->required();
+  app.add_option("HEIGHT", arguments.input, "Surface file without missing samples; levelled")->required();
   app.add_option("--output,-o", arguments.output, "EXR to write")->required();
   app.add_option("--report", arguments.report, "HTML page to write too: maps, energy, error while tracing, choice");
   app.add_option("--incidence", arguments.incidence, "THETA,PHI of the light in degrees")

@@ -90,7 +90,8 @@ bool begins_with(const std::filesystem::path& path, std::string_view magic) {
 
 Json describe_any(const std::filesystem::path& path) {
   if (path.extension() == ".uvj") return describe(read_uvj(path));
-  if (begins_with(path, "\x76\x2f\x31\x01")) {
+  // An OpenEXR file is a relief where it has a sidecar, else a BSDF.
+  if (begins_with(path, "\x76\x2f\x31\x01") && !has_sidecar(path)) {
     return is_bsdf_table(path) ? describe(read_bsdf_table(path)) : describe(read_exr(path));
   }
   return describe(read_surface(path));

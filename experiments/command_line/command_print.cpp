@@ -81,7 +81,7 @@ Command add_validate(CLI::App& program) {
       "taken out (see correct), and it may be turned by up to 5 degrees.");
   auto arguments = std::make_shared<ValidateArguments>();
   app->add_option("DESIGN", arguments->design, "Designed relief (.gwy)")->required();
-  app->add_option("--measured", arguments->measured, "Measured surface (.al3d, .x3p, .gwy)")->required();
+  app->add_option("--measured", arguments->measured, "Measured surface file")->required();
   app->add_option("--output,-o", arguments->output, "Folder for registered.gwy, residual.gwy, comparison.json")
       ->required();
   return {app, [arguments](const CommandContext& context) {

@@ -6,11 +6,13 @@
 
 #include "experiments/command_line/command.h"
 #include "experiments/command_line/option_checks.h"
+#include "experiments/command_line/surface_arguments.h"
 #include "experiments/configuration/pattern_table.h"
 #include "experiments/run/run_files.h"
 #include "forward/surface/mesh.h"
 #include "measurement/correction/correction.h"
 #include "measurement/formats/surface_file.h"
+#include "measurement/formats/surface_output.h"
 #include "measurement/texture/roughness.h"
 
 namespace mezzotint {
@@ -19,8 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct FileArguments {
-  std::string input;
+struct FileArguments : SurfaceArguments {
   std::string output;
 };
 
@@ -30,15 +31,7 @@ std::string ending_of(const std::string& path) {
   return ending;
 }
 
-void write_surface(const SurfaceFile& surface, const std::string& path) {
-  if (ending_of(path) == ".gwy") {
-    auto provenance = surface.provenance;
-    if (!surface.assumption.empty()) provenance["assumption"] = surface.assumption;
-    return write_gwy(surface.field, surface.title, provenance, path);
-  }
-  if (ending_of(path) == ".obj") return write_obj(to_mesh(surface.field), {}, path);
-  throw InvalidInput(path + ": surfaces are written as .gwy or .obj");
-}
+std::string written_help(std::string_view what) { return fmt::format("{} ({})", what, written_surface_formats); }
 
 Json written(const std::string& path) { return {{"written", path}}; }
 
@@ -94,12 +87,12 @@ std::string correction_in_words(const CorrectArguments& arguments) {
 }  // namespace
 
 Command add_convert(CLI::App& program) {
-  auto* app = program.add_subcommand("convert", "Convert a surface (.al3d, .x3p, .gwy) to .gwy or to a mesh (.obj)");
+  auto* app = program.add_subcommand("convert", "Convert a surface to another format, or to a mesh (.obj)");
   auto arguments = std::make_shared<FileArguments>();
-  app->add_option("IN", arguments->input, "Surface file")->required();
-  app->add_option("OUT", arguments->output, "File to write; its ending names the format")->required();
+  add_surface_input(*app, "IN", *arguments);
+  app->add_option("OUT", arguments->output, written_help("File to write; its ending names the format"))->required();
   return {app, [arguments](const CommandContext& context) {
-            write_surface(read_surface(arguments->input), arguments->output);
+            write_surface(arguments->read(), arguments->output);
             context.print(written(arguments->output), "wrote " + arguments->output);
             return ExitStatus::Done;
           }};
@@ -109,8 +102,8 @@ Command add_correct(CLI::App& program) {
   auto* app =
       program.add_subcommand("correct", "Correct a scan: crop, level, take out outliers, fill holes (in this order)");
   auto arguments = std::make_shared<CorrectArguments>();
-  app->add_option("SCAN", arguments->input, "Surface file")->required();
-  app->add_option("--output,-o", arguments->output, "File to write (.gwy or .obj)")->required();
+  add_surface_input(*app, "SCAN", *arguments);
+  app->add_option("--output,-o", arguments->output, written_help("File to write"))->required();
   app->add_option("--outliers", arguments->outliers, "Mask samples further than K standard deviations from the plane")
       ->check(in_range(1.0, 100.0));
   app->add_flag("--fill", arguments->fill, "Fill missing samples by Laplace's equation");
@@ -118,7 +111,7 @@ Command add_correct(CLI::App& program) {
       ->check(CLI::IsMember({"plane"}));
   app->add_option("--crop", arguments->crop, "X,Y,W,H in samples")->delimiter(',')->expected(4);
   return {app, [arguments](const CommandContext& context) {
-            SurfaceFile surface = read_surface(arguments->input);
+            SurfaceFile surface = arguments->read();
             const std::size_t missing = surface.field.missing_count();
             surface.field = corrected(std::move(surface.field), *arguments);
             surface.provenance["correction"] = correction_in_words(*arguments);
@@ -134,15 +127,14 @@ Command add_correct(CLI::App& program) {
 
 Command add_roughness(CLI::App& program) {
   auto* app = program.add_subcommand("roughness", "Areal parameters of ISO 25178-2, each with its standard error");
-  struct Arguments {
-    std::string input;
+  struct Arguments : SurfaceArguments {
     std::string level = "plane";
   };
   auto arguments = std::make_shared<Arguments>();
-  app->add_option("SCAN", arguments->input, "Surface file (.al3d, .x3p, .gwy)")->required();
+  add_surface_input(*app, "SCAN", *arguments);
   app->add_option("--level", arguments->level, "plane (default) or none")->check(CLI::IsMember({"plane", "none"}));
   return {app, [arguments](const CommandContext& context) {
-            const SurfaceFile surface = read_surface(arguments->input);
+            const SurfaceFile surface = arguments->read();
             const AreaRoughness roughness =
                 area_roughness(arguments->level == "plane" ? level(surface.field) : surface.field);
             Json json = to_json(roughness);
@@ -155,12 +147,14 @@ Command add_roughness(CLI::App& program) {
 
 Command add_synthesize(CLI::App& program) {
   auto* app = program.add_subcommand("synthesize", "A pattern file to a relief");
-  struct Arguments : FileArguments {
+  struct Arguments {
+    std::string input;
+    std::string output;
     std::vector<std::string> settings;
   };
   auto arguments = std::make_shared<Arguments>();
   app->add_option("PATTERN", arguments->input, "Pattern file (TOML); examples under experiments/patterns")->required();
-  app->add_option("--output,-o", arguments->output, "File to write (.gwy or .obj)")->required();
+  app->add_option("--output,-o", arguments->output, written_help("File to write"))->required();
   app->add_option("--set", arguments->settings, "Change a setting: --set pattern.scale_um=80")->allow_extra_args(false);
   return {app, [arguments](const CommandContext& context) {
             PatternFile file = read_pattern_file(arguments->input, arguments->settings);
@@ -192,14 +186,14 @@ Command add_mesh(CLI::App& program) {
     double index = 1.5;
   };
   auto arguments = std::make_shared<Arguments>();
-  app->add_option("HEIGHT", arguments->input, "Surface file (.al3d, .x3p, .gwy)")->required();
+  add_surface_input(*app, "HEIGHT", *arguments);
   app->add_option("--output,-o", arguments->output, "OBJ to write; its MTL stands beside it")->required();
   app->add_option("--index", arguments->index, "Index of refraction (Ni of the material; default 1.5)")
       ->check(in_range(1.0, 10.0));
   return {app, [arguments](const CommandContext& context) {
             if (ending_of(arguments->output) != ".obj")
               throw InvalidInput(arguments->output + ": meshes are written as .obj");
-            const TriangleMesh mesh = to_mesh(read_surface(arguments->input).field);
+            const TriangleMesh mesh = to_mesh(arguments->read().field);
             write_obj(mesh, {.index_of_refraction = arguments->index}, arguments->output);
             Json json = written(arguments->output);
             json["vertices"] = mesh.vertices_um.size();

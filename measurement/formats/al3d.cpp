@@ -146,6 +146,14 @@ bool is_missing(double z, double marker) {
   return std::abs(z - marker) <= marker_tolerance * std::abs(marker);
 }
 
+// Of files that Mezzotint wrote; in all others heights are absolute.
+double written_datum_m(const std::filesystem::path& path, const Tags& tags) {
+  if (tags.find(al3d::datum_key) == tags.end()) return 0.0;
+  const double datum_m = number_tag(path, tags, al3d::datum_key);
+  if (!std::isfinite(datum_m)) throw FileError(path, "header", fmt::format("{} is {} m", al3d::datum_key, datum_m));
+  return datum_m;
+}
+
 std::map<std::string, std::string> provenance_of(const Tags& tags) {
   std::map<std::string, std::string> provenance;
   for (const std::string_view key : {"CreatingApplication", "Version", "DepthResShiftVal", "DepthResFilterVal"}) {
@@ -171,7 +179,7 @@ SurfaceFile parse_al3d(const std::filesystem::path& path, std::span<const std::b
   std::string assumption;
   const DepthImage depth = locate_depth(path, tags, grid, reader.offset(), bytes, assumption);
   const double marker = invalid_marker(path, tags);
-  const double datum_m = tags.find(al3d::datum_key) == tags.end() ? 0.0 : number_tag(path, tags, al3d::datum_key);
+  const double datum_m = written_datum_m(path, tags);
   const auto height_m = [&](std::size_t i) {
     const std::size_t place = i / grid.columns * depth.stride + i % grid.columns * sizeof(float);
     const double z = little_endian<float>(depth.bytes.data() + place);

@@ -150,6 +150,8 @@ TEST(Al3d, NamesThePlaceAndWhatWouldBeRight) {
   EXPECT_NE(complaint(recipe).find("cut short"), std::string::npos);
   recipe.tags = {{"DepthImageOffset", "0"}};
   EXPECT_NE(complaint(recipe).find("without a depth image"), std::string::npos);
+  recipe.tags = {{"MezzotintDatum", "nan"}};
+  EXPECT_EQ(complaint(recipe), "test.al3d: header: MezzotintDatum is nan m");
   recipe.tags = {{"PixelSizeYMeter", "0"}};
   EXPECT_NE(complaint(recipe).find("pitch"), std::string::npos);
 }

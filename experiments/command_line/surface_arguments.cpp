@@ -1,0 +1,25 @@
+#include "experiments/command_line/surface_arguments.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "experiments/command_line/option_checks.h"
+
+namespace mezzotint {
+
+SurfaceFile SurfaceArguments::read() const {
+  ReadOptions options;
+  if (min_quality > 0) options.min_quality = min_quality;
+  return read_surface(input, options);
+}
+
+void add_surface_input(CLI::App& app, const char* name, SurfaceArguments& arguments) {
+  app.add_option(name, arguments.input,
+                 fmt::format("Surface: {}; FILE.gwy#/N/data for one of several channels", read_surface_formats))
+      ->required();
+  app.add_option("--min-quality", arguments.min_quality,
+                 "Take samples below this gray level of qualitymap.bmp as missing (Alicona's folders)")
+      ->check(CLI::Range(1, 255));
+}
+
+}  // namespace mezzotint

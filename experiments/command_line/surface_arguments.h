@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "measurement/formats/surface_file.h"
+
+namespace CLI {
+class App;
+}
+
+namespace mezzotint {
+
+/// The surface that a command reads, and how.
+struct SurfaceArguments {
+  std::string input;
+  int min_quality = 0;  ///< 0: not asked for
+
+  [[nodiscard]] SurfaceFile read() const;
+};
+
+/// The file as a positional argument, and --min-quality.
+void add_surface_input(CLI::App& app, const char* name, SurfaceArguments& arguments);
+
+}  // namespace mezzotint
