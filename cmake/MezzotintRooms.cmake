@@ -9,7 +9,7 @@ add_library(mezzotint_compile_options INTERFACE)
 target_compile_options(mezzotint_compile_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Wold-style-cast
   -Wno-missing-field-initializers  # designated initialisers leave the documented defaults in place
-  -Wno-restrict  # GCC 12 warns of std::string + const char* in its own headers (bug 105651)
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # GCC 12 warns of std::string + const char* in its own headers (bug 105651)
   -ffp-contract=off)  # the same bits whatever the compiler may fuse
 
 function(mezzotint_room)

@@ -82,8 +82,6 @@ SurfaceFile read_surface(const fs::path& path, const ReadOptions& options) {
   return surface;
 }
 
-SurfaceFile read_al3d(const fs::path& path) { return parse_al3d(path, read_file(path)); }
-SurfaceFile read_x3p(const fs::path& path) { return parse_x3p(path, read_file(path)); }
 SurfaceFile read_gwy(const fs::path& path) { return parse_gwy(path, read_file(path)); }
 
 }  // namespace mezzotint

@@ -46,8 +46,7 @@ inline constexpr std::string_view read_surface_formats =
 /// Whether a picture is a relief: it has a sidecar.
 [[nodiscard]] bool has_sidecar(const std::filesystem::path& picture);
 
-[[nodiscard]] SurfaceFile read_al3d(const std::filesystem::path& path);
-[[nodiscard]] SurfaceFile read_x3p(const std::filesystem::path& path);
+/// As read_surface, for a file that can be nothing else.
 [[nodiscard]] SurfaceFile read_gwy(const std::filesystem::path& path);
 
 /// Gwyddion's native format: /0/data in metres (datum added in double), /0/mask where samples are missing,

@@ -275,11 +275,13 @@ std::string build_exr(std::int32_t columns, std::int32_t rows, const std::vector
   attribute("screenWindowCenter", "v2f", zeros);
   attribute("screenWindowWidth", "float", one);
   b.push_back('\0');
+  const auto lines = static_cast<std::int32_t>(values.size()) / columns;  // all, unless the header promises more
   const std::size_t line_bytes = 4 * static_cast<std::size_t>(columns) + 8;
-  const std::size_t start = b.size() + 8 * static_cast<std::size_t>(rows);
-  for (std::size_t row = 0; row < static_cast<std::size_t>(rows); ++row)
+  const std::size_t start = b.size() + 8 * static_cast<std::size_t>(lines);
+  for (std::size_t row = 0; row < static_cast<std::size_t>(lines); ++row) {
     append(b, std::uint64_t{start + row * line_bytes});
-  for (std::int32_t row = 0; row < rows; ++row) {
+  }
+  for (std::int32_t row = 0; row < lines; ++row) {
     append(b, row);
     append(b, static_cast<std::uint32_t>(4 * columns));
     for (std::int32_t column = 0; column < columns; ++column) {
