@@ -11,6 +11,7 @@
 #include "experiments/version.h"
 #include "forward/base/digest.h"
 #include "forward/base/error.h"
+#include "measurement/formats/surface_file.h"
 
 namespace mezzotint {
 
@@ -63,7 +64,9 @@ const std::vector<Stage>& all_stages() {
 std::string experiment_digest(const Experiment& experiment) {
   std::string text =
       std::string(program_version) + "\n" + experiment.canonical_text + "\n" + printer_text(experiment.printer);
-  if (experiment.target.kind == "scan") text += "\n" + file_digest(experiment.target.scan);
+  if (experiment.target.kind == "scan") {
+    for (const auto& file : files_of_surface(experiment.target.scan)) text += "\n" + file_digest(file);
+  }
   return sha256_hex(std::as_bytes(std::span(text)));
 }
 

@@ -37,6 +37,10 @@ Source split_channel(const fs::path& path) {
   return {text.substr(0, hash), channel};
 }
 
+Source source_of(const fs::path& path) {
+  return is_al3d_folder(path) ? Source{al3d_of_folder(path), {}} : split_channel(path);
+}
+
 SurfaceFile parse_text(const fs::path& path, std::span<const std::byte> bytes) {
   if (path.extension() == ".csv") return parse_csv(path, bytes, read_sidecar(path));
   if (path.extension() == ".xyz") return parse_xyz(path, bytes, read_sidecar(path));
@@ -70,9 +74,15 @@ bool has_sidecar(const fs::path& picture) {
   return fs::is_regular_file(sidecar_path(picture), ignored);
 }
 
+std::vector<fs::path> files_of_surface(const fs::path& path) {
+  std::vector<fs::path> files = {source_of(path).file};
+  if (has_sidecar(files.front())) files.push_back(sidecar_path(files.front()));
+  return files;
+}
+
 SurfaceFile read_surface(const fs::path& path, const ReadOptions& options) {
   const bool folder = is_al3d_folder(path);
-  const Source source = folder ? Source{al3d_of_folder(path), {}} : split_channel(path);
+  const Source source = source_of(path);
   SurfaceFile surface = parse_surface(source, read_file(source.file));
   if (folder) add_al3d_information(path, surface);
   if (options.min_quality) {

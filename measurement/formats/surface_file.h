@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "forward/surface/height_field.h"
 
@@ -42,6 +43,9 @@ struct ReadOptions {
 /// The endings of what read_surface reads, for help texts.
 inline constexpr std::string_view read_surface_formats =
     ".al3d (or its folder), .x3p, .gwy, .sur, .sdf, .opd, and with a sidecar .png, .tif, .exr, .csv, .xyz";
+
+/// The files that read_surface takes heights and sizes from: the file itself, and its sidecar where it has one.
+[[nodiscard]] std::vector<std::filesystem::path> files_of_surface(const std::filesystem::path& path);
 
 /// Whether a picture is a relief: it has a sidecar.
 [[nodiscard]] bool has_sidecar(const std::filesystem::path& picture);

@@ -34,6 +34,7 @@ TEST(Al3dFolder, IsReadAsOneFile) {
       "<Object3D version=\"1\"><generalData><name>coin</name><createdBy> me </createdBy></generalData></Object3D>");
   const SurfaceFile surface = read_surface(folder.path());
   EXPECT_EQ(surface.format, "al3d");
+  EXPECT_EQ(files_of_surface(folder.path()), std::vector<std::filesystem::path>{folder / "dem.al3d"});
   EXPECT_EQ(surface.field.missing_count(), 0U);
   EXPECT_EQ(surface.provenance.at("info.xml generalData/name"), "coin");
   EXPECT_EQ(surface.provenance.at("info.xml generalData/createdBy"), "me");

@@ -143,6 +143,7 @@ TEST(Picture, WithoutASidecarItIsRefusedWithWhatToWrite) {
   }
   write_file(folder / "relief.png.toml", "width_um = 30.0\ndepth_um = 18.0\n");
   expect_six(read_surface(folder / "relief.png").field, 18.0);
+  EXPECT_EQ(files_of_surface(folder / "relief.png").size(), 2U);
 }
 
 std::string sidecar_complaint(std::string_view toml) {
