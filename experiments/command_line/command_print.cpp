@@ -10,7 +10,7 @@
 #include "experiments/run/run_files.h"
 #include "fabrication/device/virtual_printer.h"
 #include "measurement/comparison/registration.h"
-#include "measurement/correction/correction.h"
+#include "measurement/correction/plane.h"
 #include "measurement/formats/surface_file.h"
 #include "measurement/texture/roughness.h"
 

@@ -8,7 +8,7 @@
 #include "experiments/run/simulate.h"
 #include "experiments/version.h"
 #include "forward/optics/bsdf_warnings.h"
-#include "measurement/correction/correction.h"
+#include "measurement/correction/plane.h"
 #include "measurement/formats/surface_file.h"
 
 namespace mezzotint {

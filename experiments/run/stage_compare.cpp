@@ -2,7 +2,7 @@
 #include "experiments/run/run_files.h"
 #include "experiments/run/stages.h"
 #include "measurement/comparison/registration.h"
-#include "measurement/correction/correction.h"
+#include "measurement/correction/plane.h"
 #include "measurement/formats/surface_file.h"
 
 namespace mezzotint {

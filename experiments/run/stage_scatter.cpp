@@ -3,7 +3,8 @@
 #include "experiments/run/patch.h"
 #include "experiments/run/simulate.h"
 #include "experiments/run/stages.h"
-#include "measurement/correction/correction.h"
+#include "measurement/correction/fill.h"
+#include "measurement/correction/plane.h"
 #include "measurement/formats/surface_file.h"
 
 namespace mezzotint {

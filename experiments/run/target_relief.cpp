@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include "forward/base/error.h"
-#include "measurement/correction/correction.h"
+#include "measurement/correction/fill.h"
+#include "measurement/correction/outliers.h"
+#include "measurement/correction/plane.h"
 #include "measurement/formats/surface_file.h"
 
 namespace mezzotint {

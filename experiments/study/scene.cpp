@@ -4,7 +4,8 @@
 
 #include "forward/base/error.h"
 #include "forward/surface/slope_covariance.h"
-#include "measurement/correction/correction.h"
+#include "measurement/correction/fill.h"
+#include "measurement/correction/plane.h"
 #include "measurement/instrument/virtual_profilometer.h"
 
 namespace mezzotint {

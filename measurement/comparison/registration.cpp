@@ -9,7 +9,7 @@
 #include "measurement/comparison/coarse_search.h"
 #include "measurement/comparison/parameter_errors.h"
 #include "measurement/comparison/refinement.h"
-#include "measurement/correction/correction.h"
+#include "measurement/correction/plane.h"
 
 namespace mezzotint {
 

@@ -6,7 +6,7 @@
 #include "forward/base/error.h"
 #include "measurement/comparison/placement.h"
 #include "measurement/comparison/registration.h"
-#include "measurement/correction/correction.h"
+#include "measurement/correction/plane.h"
 
 namespace mezzotint {
 

@@ -1,121 +1,146 @@
+#include "measurement/correction/fill.h"
+
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include <Eigen/SparseCholesky>
 
 #include "forward/base/error.h"
-#include "measurement/correction/correction.h"
+#include "measurement/correction/laplace_multigrid.h"
+#include "measurement/correction/laplace_system.h"
 
 namespace mezzotint {
 
 namespace {
 
-// The factor of a compact hole of n samples holds about 8·n·log2(n) numbers: 10 GB at this many.
-constexpr std::size_t most_unknowns = std::size_t{1} << 23;
-constexpr std::int32_t measured = -1;
+// A dense factor of a hole this small costs less than a sparse one's bookkeeping.
+constexpr std::size_t small_hole = 48;
+// Where a sparse Cholesky factor and multigrid take equally long.
+constexpr std::size_t most_factored = 20000;
+constexpr std::int32_t not_missing = -1, unseen = -2;
 
-struct Neighbour {
-  std::size_t index = 0;
-  double weight = 0.0;
-};
-
-/// The four neighbours of a sample on the grid, with the weights of the five-point Laplacian times dx². Beyond
-/// the end of a patch there is none, which is a zero normal derivative; a periodic field wraps.
-class Stencil {
+/// The connected holes of a field, one after another.
+class Holes {
 public:
-  explicit Stencil(const HeightField& field)
-      : columns_(field.columns()), rows_(field.rows()), periodic_(field.periodic()) {
-    const double ratio = field.grid().pitch_x / field.grid().pitch_y;
-    weight_y_ = ratio * ratio;
+  explicit Holes(const HeightField& field) : stencil_(field), number_(field.grid().size(), not_missing) {
+    for (std::size_t i = 0; i < number_.size(); ++i)
+      if (std::isnan(field.heights_um()[i])) number_[i] = unseen;
   }
 
-  template <class Visit>
-  void for_each_neighbour(std::size_t index, const Visit& visit) const {
-    const std::size_t column = index % columns_, row = index / columns_;
-    if (column > 0 || periodic_) visit(at((column + columns_ - 1) % columns_, row, 1.0));
-    if (column + 1 < columns_ || periodic_) visit(at((column + 1) % columns_, row, 1.0));
-    if (row > 0 || periodic_) visit(at(column, (row + rows_ - 1) % rows_, weight_y_));
-    if (row + 1 < rows_ || periodic_) visit(at(column, (row + 1) % rows_, weight_y_));
+  /// The samples of the next hole, in ascending order; empty after the last.
+  std::vector<std::size_t> next() {
+    while (cursor_ < number_.size() && number_[cursor_] != unseen) ++cursor_;
+    std::vector<std::size_t> hole;
+    if (cursor_ == number_.size()) return hole;
+    hole.push_back(cursor_);
+    number_[cursor_] = 0;
+    for (std::size_t k = 0; k < hole.size(); ++k) {
+      stencil_.for_each_neighbour(hole[k], [&](std::size_t index, double) {
+        if (number_[index] != unseen) return;
+        number_[index] = 0;
+        hole.push_back(index);
+      });
+    }
+    std::ranges::sort(hole);
+    return hole;
+  }
+
+  /// Numbers the samples of a hole, or of several: what `laplace_system` wants.
+  const std::vector<std::int32_t>& numbered(const std::vector<std::size_t>& samples) {
+    for (std::size_t k = 0; k < samples.size(); ++k) number_[samples[k]] = static_cast<std::int32_t>(k);
+    return number_;
   }
 
 private:
-  [[nodiscard]] Neighbour at(std::size_t column, std::size_t row, double weight) const {
-    return {row * columns_ + column, weight};
-  }
-
-  std::size_t columns_, rows_;
-  bool periodic_;
-  double weight_y_ = 1.0;
+  LaplaceStencil stencil_;
+  std::vector<std::int32_t> number_;
+  std::size_t cursor_ = 0;
 };
 
-struct Unknowns {
-  std::vector<std::int32_t> number;   // of each sample; `measured` where there is nothing to find
-  std::vector<std::size_t> position;  // of each unknown
+/// Laplace's equation in a small hole by a dense Cholesky factor on the stack.
+class SmallHole {
+public:
+  SmallHole(const HeightField& field, const std::vector<std::size_t>& samples, const std::vector<std::int32_t>& number)
+      : count_(samples.size()) {
+    const LaplaceStencil stencil(field);
+    for (std::size_t k = 0; k < count_; ++k) {
+      right_[k] = 0.0;
+      std::fill_n(row(k), k + 1, 0.0);
+      stencil.for_each_neighbour(samples[k], [&](std::size_t index, double weight) {
+        const std::int32_t other = number[index];
+        if (other == static_cast<std::int32_t>(k)) return;
+        row(k)[k] += weight;
+        if (other < 0)
+          right_[k] += weight * static_cast<double>(field.heights_um()[index]);
+        else if (static_cast<std::size_t>(other) < k)
+          row(k)[other] -= weight;
+      });
+    }
+  }
+
+  /// In place: right_ becomes the solution.
+  const double* solve() {
+    for (std::size_t i = 0; i < count_; ++i) {
+      for (std::size_t j = 0; j <= i; ++j) {
+        double sum = row(i)[j];
+        for (std::size_t k = 0; k < j; ++k) sum -= row(i)[k] * row(j)[k];
+        row(i)[j] = i == j ? std::sqrt(sum) : sum / row(j)[j];
+      }
+      for (std::size_t k = 0; k < i; ++k) right_[i] -= row(i)[k] * right_[k];
+      right_[i] /= row(i)[i];
+    }
+    for (std::size_t i = count_; i-- > 0;) {
+      for (std::size_t k = i + 1; k < count_; ++k) right_[i] -= row(k)[i] * right_[k];
+      right_[i] /= row(i)[i];
+    }
+    return right_.data();
+  }
+
+private:
+  double* row(std::size_t k) { return lower_.data() + k * small_hole; }
+
+  std::size_t count_;
+  std::array<double, small_hole * small_hole> lower_;
+  std::array<double, small_hole> right_;
 };
 
-Unknowns number_unknowns(const HeightField& field, std::size_t missing) {
-  Unknowns unknowns{std::vector<std::int32_t>(field.grid().size(), measured), {}};
-  unknowns.position.reserve(missing);
-  for (std::size_t i = 0; i < field.grid().size(); ++i) {
-    if (!std::isnan(field.heights_um()[i])) continue;
-    unknowns.number[i] = static_cast<std::int32_t>(unknowns.position.size());
-    unknowns.position.push_back(i);
-  }
-  return unknowns;
+Eigen::VectorXd solve(const LaplaceSystem& system, const std::vector<std::size_t>& samples, std::size_t columns) {
+  if (samples.size() > most_factored) return solve_by_multigrid(system, samples, columns);
+  const Eigen::SparseMatrix<double> matrix(system.matrix);
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
+  if (factor.info() != Eigen::Success) throw MethodError("the missing samples could not be filled: no Cholesky factor");
+  return factor.solve(system.right_side);
 }
 
-struct LaplaceSystem {
-  Eigen::SparseMatrix<double> matrix;  // lower triangle
-  Eigen::VectorXd right_side;
-};
-
-LaplaceSystem laplace_system(const HeightField& field, const Unknowns& unknowns) {
-  const auto count = static_cast<Eigen::Index>(unknowns.position.size());
-  LaplaceSystem system;
-  system.matrix.resize(count, count);
-  system.right_side.setZero(count);
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(5 * unknowns.position.size());
-  const Stencil stencil(field);
-  for (std::int32_t k = 0; k < count; ++k) {
-    double diagonal = 0.0;
-    stencil.for_each_neighbour(unknowns.position[static_cast<std::size_t>(k)], [&](const Neighbour& neighbour) {
-      const std::int32_t other = unknowns.number[neighbour.index];
-      if (other == k) return;  // a period of one sample: its own neighbour
-      diagonal += neighbour.weight;
-      if (other == measured) {
-        system.right_side[k] += neighbour.weight * static_cast<double>(field.heights_um()[neighbour.index]);
-      } else if (other < k) {
-        entries.emplace_back(k, other, -neighbour.weight);
-      }
-    });
-    entries.emplace_back(k, k, diagonal);
-  }
-  system.matrix.setFromTriplets(entries.begin(), entries.end());
-  return system;
+template <class Values>
+void write(HeightField& field, const std::vector<std::size_t>& samples, const Values& heights_um) {
+  for (std::size_t k = 0; k < samples.size(); ++k)
+    field.heights_um()[samples[k]] = static_cast<float>(heights_um[static_cast<std::ptrdiff_t>(k)]);
 }
 
 }  // namespace
 
-// The system is symmetric and positive definite: the grid is connected, so every hole has a measured rim.
 HeightField fill_missing(const HeightField& field) {
   const std::size_t missing = field.missing_count();
   require(missing < field.grid().size(), "no sample was measured: there is nothing to fill the field from");
-  require(missing <= most_unknowns, std::to_string(missing) + " samples are missing; up to " +
-                                        std::to_string(most_unknowns) + " are filled. Crop the field");
   HeightField filled = field;
   if (missing == 0) return filled;
-  const Unknowns unknowns = number_unknowns(field, missing);
-  const LaplaceSystem system = laplace_system(field, unknowns);
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(system.matrix);
-  if (factor.info() != Eigen::Success) throw MethodError("the missing samples could not be filled: no Cholesky factor");
-  const Eigen::VectorXd heights_um = factor.solve(system.right_side);
-  for (std::size_t k = 0; k < missing; ++k) {
-    filled.heights_um()[unknowns.position[k]] = static_cast<float>(heights_um[static_cast<Eigen::Index>(k)]);
+  Holes holes(field);
+  std::vector<std::size_t> large;
+  for (std::vector<std::size_t> hole = holes.next(); !hole.empty(); hole = holes.next()) {
+    if (hole.size() <= small_hole) {
+      write(filled, hole, SmallHole(field, hole, holes.numbered(hole)).solve());
+    } else {
+      large.insert(large.end(), hole.begin(), hole.end());
+    }
   }
+  if (large.empty()) return filled;
+  std::ranges::sort(large);
+  const LaplaceSystem system = laplace_system(field, large, holes.numbered(large));
+  write(filled, large, solve(system, large, field.columns()));
   return filled;
 }
 

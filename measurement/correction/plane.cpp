@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "forward/base/error.h"
-#include "measurement/correction/correction.h"
+#include "measurement/correction/plane.h"
 
 namespace mezzotint {
 

@@ -5,7 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "forward/base/error.h"
-#include "measurement/correction/correction.h"
+#include "measurement/correction/fill.h"
+#include "measurement/correction/plane.h"
 
 namespace mezzotint {
 namespace {
@@ -92,6 +93,22 @@ TEST(FillMissing, APeriodicFieldIsFilledAcrossItsEnds) {
     ASSERT_NEAR(filled.heights_um()[i], field.heights_um()[i], 1e-5);  // as above
   }
   EXPECT_TRUE(filled.periodic());
+}
+
+TEST(FillMissing, ALargeHoleIsFilledAsExactlyAsASmallOne) {
+  // 70000 samples, far beyond a sparse factor: multigrid. A hole with a jagged rim and islands in it.
+  const Grid grid{400, 300, Length::from_um(0.8), Length::from_um(1.1)};
+  const double k = 0.02, rate = decay_rate(k, grid);
+  const auto field = field_of(grid, Continuation::Mirrored,
+                              [&](double c, double r) { return std::cos(k * c) * std::cosh(rate * (r - 150.0)); });
+  HeightField holed = field;
+  for (std::size_t row = 20; row < 280; ++row)
+    for (std::size_t column = 30 + row % 7; column < 320 - row % 11; ++column)
+      if (column % 41 != 0 || row % 37 != 0) holed.at(column, row) = missing;
+  ASSERT_GT(holed.missing_count(), 70000U);
+  const HeightField filled = fill_missing(holed);
+  // Rounding of the rim to float (heights to 9) and of the result.
+  for (std::size_t i = 0; i < grid.size(); ++i) ASSERT_NEAR(filled.heights_um()[i], field.heights_um()[i], 4e-6) << i;
 }
 
 TEST(FillMissing, OneSampleIsTheWeightedMeanOfItsFourNeighbours) {

@@ -4,7 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "forward/base/error.h"
-#include "measurement/correction/correction.h"
+#include "measurement/correction/outliers.h"
+#include "measurement/correction/plane.h"
 
 namespace mezzotint {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "measurement/correction/correction.h"
+#include "measurement/correction/plane.h"
 #include "measurement/formats/surface_file.h"
 #include "measurement/texture/roughness.h"
 #include "tests/test_data.h"

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "forward/base/error.h"
-#include "measurement/correction/correction.h"
+#include "measurement/correction/plane.h"
 #include "measurement/formats/parsers.h"
 #include "measurement/texture/roughness.h"
 #include "tests/measurement/formats/instrument_builders.h"

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-
 #include "forward/surface/height_field.h"
 
 namespace mezzotint {
@@ -21,20 +19,5 @@ struct Plane {
 [[nodiscard]] HeightField subtract_plane(const HeightField& field, const Plane& plane);
 /// Levelled by the least-squares plane.
 [[nodiscard]] HeightField level(const HeightField& field);
-
-/// A field without its outliers: samples further than `k` standard deviations from the mean (after the
-/// least-squares plane) become missing. Returns how many.
-struct OutlierResult {
-  HeightField field;
-  std::size_t removed = 0;
-};
-/// @throws InvalidInput for k not in [1, 100].
-[[nodiscard]] OutlierResult mask_outliers(const HeightField& field, double k);
-
-/// Missing samples replaced by the solution of Laplace's equation with the measured ones as boundary values
-/// (dx ≠ dy respected; zero normal derivative at the ends of a patch, wrapped for a periodic one).
-/// Exact sparse Cholesky solution. Returns the field whole.
-/// @throws InvalidInput when no sample was measured at all.
-[[nodiscard]] HeightField fill_missing(const HeightField& field);
 
 }  // namespace mezzotint
