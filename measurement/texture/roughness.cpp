@@ -7,19 +7,14 @@
 
 #include "forward/base/error.h"
 #include "measurement/texture/block_jackknife.h"
+#include "measurement/texture/blocks.h"
 
 namespace mezzotint {
 
 namespace {
 
-constexpr std::size_t blocks_a_side = 4;
-static_assert(blocks_a_side * blocks_a_side == jackknife_blocks);
-
 template <class Value>
-using PerBlock = std::array<Value, jackknife_blocks>;
-
-// Block of the sample (or cell) `index` of `count` along one side.
-std::size_t block_along(std::size_t index, std::size_t count) { return blocks_a_side * index / count; }
+using PerBlock = std::array<Value, block_count>;
 
 /// Sums over a set of samples of powers of the height above a reference.
 struct PowerSums {
@@ -58,20 +53,9 @@ CentralMoments central_moments(const PowerSums& sums) {
   return {d, std::sqrt(variance), third / (variance * std::sqrt(variance)), fourth / (variance * variance)};
 }
 
-template <class Visit>
-void for_each_measured(const HeightField& field, const Visit& visit) {
-  for (std::size_t row = 0; row < field.rows(); ++row) {
-    const std::size_t block_row = blocks_a_side * block_along(row, field.rows());
-    for (std::size_t column = 0; column < field.columns(); ++column) {
-      const float z = field.at(column, row);
-      if (!std::isnan(z)) visit(block_row + block_along(column, field.columns()), static_cast<double>(z));
-    }
-  }
-}
-
 double mean_um(const HeightField& field) {
   double sum = 0.0, count = 0.0;
-  for_each_measured(field, [&](std::size_t, double z) {
+  for_each_in_blocks(field, [&](std::size_t, double z) {
     sum += z;
     count += 1.0;
   });
@@ -98,7 +82,7 @@ template <class Sums, class Statistic>
 Quantity estimate(const PerBlock<Sums>& blocks, const char* unit, const Statistic& statistic) {
   const Sums total = total_of(blocks);
   PerBlock<double> without{};
-  for (std::size_t j = 0; j < jackknife_blocks; ++j) without[j] = statistic(total.without(blocks[j]));
+  for (std::size_t j = 0; j < block_count; ++j) without[j] = statistic(total.without(blocks[j]));
   const double whole = statistic(total);
   return {whole, unit, jackknife_standard_error(whole, without, counts_of(blocks))};
 }
@@ -107,17 +91,17 @@ Quantity estimate(const PerBlock<Sums>& blocks, const char* unit, const Statisti
 Quantity mean_deviation(const HeightField& field, double mean, const PerBlock<PowerSums>& blocks) {
   const PowerSums total = total_of(blocks);
   PerBlock<double> means_without{}, sums_without{};
-  for (std::size_t j = 0; j < jackknife_blocks; ++j) means_without[j] = central_moments(total.without(blocks[j])).mean;
+  for (std::size_t j = 0; j < block_count; ++j) means_without[j] = central_moments(total.without(blocks[j])).mean;
   double sum = 0.0;
-  for_each_measured(field, [&](std::size_t block, double height) {
+  for_each_in_blocks(field, [&](std::size_t block, double height) {
     const double z = height - mean;
     sum += std::abs(z - total.first / total.count);
-    for (std::size_t j = 0; j < jackknife_blocks; ++j) {
+    for (std::size_t j = 0; j < block_count; ++j) {
       sums_without[j] += j == block ? 0.0 : std::abs(z - means_without[j]);
     }
   });
   PerBlock<double> without{};
-  for (std::size_t j = 0; j < jackknife_blocks; ++j) without[j] = sums_without[j] / (total.count - blocks[j].count);
+  for (std::size_t j = 0; j < block_count; ++j) without[j] = sums_without[j] / (total.count - blocks[j].count);
   const double whole = sum / total.count;
   return {whole, "µm", jackknife_standard_error(whole, without, counts_of(blocks))};
 }
@@ -165,7 +149,7 @@ PerBlock<SlopeSums> slope_sums(const HeightField& field) {
 
 PerBlock<PowerSums> power_sums(const HeightField& field, double mean) {
   PerBlock<PowerSums> blocks;
-  for_each_measured(field, [&](std::size_t block, double z) { blocks[block].add(z - mean); });
+  for_each_in_blocks(field, [&](std::size_t block, double z) { blocks[block].add(z - mean); });
   return blocks;
 }
 

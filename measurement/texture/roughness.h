@@ -12,7 +12,7 @@ namespace mezzotint {
 ///
 /// Units    Sa, Sq, Sz in µm; Ssk, Sku, Sdq in 1; Sdr in 1 (a ratio, not per cent).
 /// Missing  samples that are missing are left out; Sdq and Sdr use cells whose four corners are measured.
-/// Standard errors: delete-one-block jackknife over `jackknife_blocks` square blocks, so that the correlation
+/// Standard errors: delete-one-block jackknife over 16 blocks, so that the correlation
 ///          of neighbours is respected; Sz is an extreme value and has none (NaN).
 /// A flat field has no shape: its Ssk and Sku are NaN.
 /// Differences from Gwyddion 2.62: Sku is ISO's (3 for a Gaussian), not the excess; Sdq and Sdr are taken over
@@ -24,8 +24,6 @@ struct AreaRoughness {
   std::size_t samples = 0;
   std::size_t missing = 0;
 };
-
-inline constexpr std::size_t jackknife_blocks = 16;
 
 /// @throws InvalidInput when fewer than four samples, or no whole cell, are left.
 [[nodiscard]] AreaRoughness area_roughness(const HeightField& field);

@@ -5,7 +5,7 @@
 #include "forward/base/error.h"
 #include "measurement/correction/outliers.h"
 #include "measurement/correction/plane.h"
-#include "tests/measurement/correction/relief.h"
+#include "tests/measurement/relief.h"
 
 namespace mezzotint {
 namespace {

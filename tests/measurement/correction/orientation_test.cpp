@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "forward/base/error.h"
-#include "tests/measurement/correction/relief.h"
+#include "tests/measurement/relief.h"
 
 namespace mezzotint {
 namespace {
