@@ -58,19 +58,21 @@ float departure_cosine(const HitBatch& hits, const RayBatch& rays, std::size_t k
 
 }  // namespace
 
-PathWalker::PathWalker(const PeriodicTile& tile, const ReliefTracer& tracer, const PathTracingOptions& options)
-    : tile_(tile),
+PathWalker::PathWalker(const SceneFrame& frame, const PeriodicTile* relief, const ReliefTracer& tracer,
+                       const PathTracingOptions& options)
+    : frame_(frame),
+      tile_(relief),
       tracer_(tracer),
       options_(options),
       choices_(options.seed, RandomPurpose::RayChoice),
       to_light_(to_direction(options.incidence)) {
   if (const auto* clear = std::get_if<Dielectric>(&options.material)) {
-    absorption_per_cell_ = clear->absorption_per_um * tile.unit_um();
+    absorption_per_cell_ = clear->absorption_per_um * frame.unit_um;
   }
 }
 
 void PathWalker::interact(const RayBatch& rays, std::size_t count, WalkSpace& space) const {
-  if (options_.normals == NormalKind::Geometric) {
+  if (options_.normals == NormalKind::Geometric && tile_ != nullptr) {
     interact_geometric(options_.material, options_.grid, rays, space.hits, count, space.met);
   } else {
     interact_one_by_one(tile_, options_.material, options_.grid, options_.normals, rays, space.hits, count, space.met);
@@ -85,10 +87,10 @@ void PathWalker::walk(const IncidentLight& light, const SampleStrata& strata, st
   interact(rays, count, space);
   for (std::size_t k = 0; k < count; ++k) {
     space.start_weight[k] = 0.0F;
-    if (space.hits.end[k] != RayEnd::Surface) {
-      leak(1.0, tally);
-    } else if (light.met_a_copy(space.aimed, space.hits, k)) {
+    if (light.missed(space.aimed, space.hits, k)) {
       tally.add(Fate::LeftSideways, 1.0);
+    } else if (space.hits.end[k] != RayEnd::Surface) {
+      leak(1.0, tally);
     } else {
       space.start_weight[k] = 1.0F;
     }
@@ -170,7 +172,7 @@ void PathWalker::meet_again(const PathBatch& paths, std::size_t k, std::uint32_t
   const float share = space.met.reflectance[k];
   float weight = paths.weight[k];
   if (side == Side::Inside && absorption_per_cell_ > 0.0) {
-    const auto kept = static_cast<float>(attenuation(paths.rays, k, double{space.hits.z[k]}));
+    const auto kept = static_cast<float>(attenuation_to(space.hits, paths.rays, k));
     tally.add(Fate::Absorbed, double{weight} - double{weight * kept});
     weight *= kept;
   }
@@ -202,11 +204,18 @@ void PathWalker::end_path(const PathBatch& paths, std::size_t k, RayEnd end, std
     return tally.leave(Fate::Reflected, paths.bin[k], weight * factor, order);
   }
   if (end == RayEnd::Below && !outside) {
-    const double kept = absorption_per_cell_ > 0.0 ? attenuation(rays, k, tile_.lowest()) : 1.0;
+    const double kept = absorption_per_cell_ > 0.0 ? attenuation(rays, k, frame_.lowest) : 1.0;
     tally.add(Fate::Absorbed, weight * (1.0 - kept));
     return tally.leave(Fate::Transmitted, paths.bin[k], weight * kept, order);
   }
+  if (end == RayEnd::Sideways) return tally.add(Fate::LeftSideways, weight);
   leak(weight, tally);
+}
+
+// The same up to a hit.
+double PathWalker::attenuation_to(const HitBatch& hits, const RayBatch& rays, std::size_t k) const {
+  if (!hits.way.empty()) return std::exp(-absorption_per_cell_ * double{hits.way[k]});
+  return attenuation(rays, k, double{hits.z[k]});
 }
 
 // Beer–Lambert along a ray inside, up to a height.
@@ -222,7 +231,7 @@ void PathWalker::place_on_surface(const SampleStrata& strata, std::uint64_t firs
   constexpr std::size_t slice = 256;
   std::array<double, slice> u{}, v{};
   HitBatch& hits = space.hits;
-  const double columns = tile_.columns(), rows = tile_.rows();
+  const double columns = tile_->columns(), rows = tile_->rows();
   for (std::size_t begin = 0; begin < count; begin += slice) {
     const std::size_t here = std::min(slice, count - begin);
     strata.points(first + begin, std::span(u).first(here), std::span(v).first(here));
@@ -231,11 +240,11 @@ void PathWalker::place_on_surface(const SampleStrata& strata, std::uint64_t firs
       const double x = u[k] * columns, y = v[k] * rows;
       const auto column = static_cast<std::uint32_t>(x), row = static_cast<std::uint32_t>(y);
       const auto in_x = static_cast<float>(x - column), in_y = static_cast<float>(y - row);
-      const std::uint32_t right = column + 1 == tile_.columns() ? 0 : column + 1;
-      const std::uint32_t upper = row + 1 == tile_.rows() ? 0 : row + 1;
-      const float z00 = tile_.height(column, row), z11 = tile_.height(right, upper);
+      const std::uint32_t right = column + 1 == tile_->columns() ? 0 : column + 1;
+      const std::uint32_t upper = row + 1 == tile_->rows() ? 0 : row + 1;
+      const float z00 = tile_->height(column, row), z11 = tile_->height(right, upper);
       const bool lower_half = in_x > in_y;
-      const float corner = lower_half ? tile_.height(right, row) : tile_.height(column, upper);
+      const float corner = lower_half ? tile_->height(right, row) : tile_->height(column, upper);
       const float a = lower_half ? corner - z00 : z11 - corner, b = lower_half ? z11 - corner : corner - z00;
       hits.end[at] = RayEnd::Surface;
       hits.cell_x[at] = static_cast<std::int32_t>(column);
@@ -244,7 +253,7 @@ void PathWalker::place_on_surface(const SampleStrata& strata, std::uint64_t firs
       hits.y[at] = in_y;
       hits.z[at] = z00 + (a * in_x + b * in_y);
       hits.slope_x[at] = a;
-      hits.slope_y[at] = b / static_cast<float>(tile_.cell_y());
+      hits.slope_y[at] = b / static_cast<float>(tile_->cell_y());
       hits.triangle[at] = lower_half ? 0 : 1;
     }
   }
@@ -303,15 +312,15 @@ void PathWalker::splat_one(const WalkSpace& space, std::size_t k, float weight, 
 }
 
 void PathWalker::splat_row(std::uint32_t row, WalkSpace& space, BatchTally& tally) const {
-  const std::uint32_t upper = row + 1 == tile_.rows() ? 0 : row + 1;
-  const auto per_y = static_cast<float>(1.0 / tile_.cell_y());
-  for (std::uint32_t begin = 0; begin < tile_.columns(); begin += rays_together / 2) {
-    const std::uint32_t end = std::min<std::uint32_t>(tile_.columns(), begin + rays_together / 2);
+  const std::uint32_t upper = row + 1 == tile_->rows() ? 0 : row + 1;
+  const auto per_y = static_cast<float>(1.0 / tile_->cell_y());
+  for (std::uint32_t begin = 0; begin < tile_->columns(); begin += rays_together / 2) {
+    const std::uint32_t end = std::min<std::uint32_t>(tile_->columns(), begin + rays_together / 2);
     std::size_t count = 0;
     for (std::uint32_t column = begin; column < end; ++column) {
-      const std::uint32_t right = column + 1 == tile_.columns() ? 0 : column + 1;
-      const float z00 = tile_.height(column, row), z10 = tile_.height(right, row);
-      const float z01 = tile_.height(column, upper), z11 = tile_.height(right, upper);
+      const std::uint32_t right = column + 1 == tile_->columns() ? 0 : column + 1;
+      const float z00 = tile_->height(column, row), z10 = tile_->height(right, row);
+      const float z01 = tile_->height(column, upper), z11 = tile_->height(right, upper);
       space.hits.slope_x[count] = z10 - z00;
       space.hits.slope_y[count++] = (z11 - z10) * per_y;
       space.hits.slope_x[count] = z11 - z01;

@@ -44,8 +44,9 @@ struct WalkSpace {
 /// Follows light from its first ray to where it ends, many paths at a time. Knows nothing of how rays find facets.
 class PathWalker {
 public:
-  /// All that is given must outlive the walker.
-  PathWalker(const PeriodicTile& tile, const ReliefTracer& tracer, const PathTracingOptions& options);
+  /// All that is given must outlive the walker. Without a relief only `walk` can be used.
+  PathWalker(const SceneFrame& frame, const PeriodicTile* relief, const ReliefTracer& tracer,
+             const PathTracingOptions& options);
 
   /// The light of strata first … first + count − 1, each of weight 1.
   void walk(const IncidentLight& light, const SampleStrata& strata, std::uint64_t first, std::uint64_t first_index,
@@ -74,8 +75,10 @@ private:
   void shine(std::size_t count, WalkSpace& space) const;
   void find_lit(std::size_t count, WalkSpace& space) const;
   [[nodiscard]] double attenuation(const RayBatch& rays, std::size_t k, double end_height) const;
+  [[nodiscard]] double attenuation_to(const HitBatch& hits, const RayBatch& rays, std::size_t k) const;
 
-  const PeriodicTile& tile_;
+  SceneFrame frame_;
+  const PeriodicTile* tile_;  ///< nullptr for a mesh
   const ReliefTracer& tracer_;
   const PathTracingOptions& options_;
   RandomStream choices_;
