@@ -75,8 +75,10 @@ void add_warning(Provenance& provenance, const std::string& text) {
 }
 
 std::string from_behind_text(double share) {
-  return fmt::format("{:.2g} % of the first hits met a face from behind: is the mesh oriented outwards?",
-                     100.0 * share);
+  return fmt::format(
+      "{:.2g} % of the first hits met a face from behind: is the mesh oriented outwards, and large enough for this "
+      "light?",
+      100.0 * share);
 }
 
 void tell(const FirstHits& first, Provenance& provenance) {
