@@ -49,7 +49,7 @@ TEST_P(MeshAndRelief, HaveTheSameBsdf) {
   const Bsdf relief = trace_bsdf(field, options);
   options.seed = 99;
   options.samples = 1U << 17;
-  const Bsdf mesh = MeshPathTracer(test::closed_mesh(field), MeshPeriod{64.0_um, 64.0_um}).trace(options);
+  const Bsdf mesh = MeshPathTracer(to_closed_mesh(field), MeshPeriod{64.0_um, 64.0_um}).trace(options);
   // χ² over the bins that hold something, as in control_variate_test: 5 standard deviations of χ²/n, and the 7 % by
   // which the error of an error from 32 batches widens it: 1 false alarm in 10^6.
   double chi_square = 0.0, bins = 0.0;
@@ -212,7 +212,7 @@ TEST(PileOfPlates, AbsorbsByTheLengthOfTheWayInside) {
 
 // A relief that leans over: waves whose crests reach beyond their own feet, in both directions.
 TriangleMesh leaning_waves(double lean) {
-  TriangleMesh mesh = test::closed_mesh(test::relief(32, 32, Continuation::Periodic, [](double c, double r) {
+  TriangleMesh mesh = to_closed_mesh(test::relief(32, 32, Continuation::Periodic, [](double c, double r) {
     return 3.0 * std::cos(2.0 * std::numbers::pi * c / 16.0) + 2.0 * std::cos(2.0 * std::numbers::pi * (r + c) / 32.0);
   }));
   test::bend(mesh, [lean](const test::Point& p) {

@@ -25,7 +25,7 @@ const MeshPeriod period = {Length::from_um(period_x), Length::from_um(period_y)}
 // A rough floor, blobs over it, and crests that lean over the ends of the tile.
 TriangleMesh rough_mesh() {
   const RandomStream random(5, RandomPurpose::Test);
-  TriangleMesh mesh = test::closed_mesh(test::relief(16, 12, Continuation::Periodic, [&](double c, double r) {
+  TriangleMesh mesh = to_closed_mesh(test::relief(16, 12, Continuation::Periodic, [&](double c, double r) {
     return 2.5 * random.uniform4(static_cast<std::uint64_t>(100.0 * c + r))[0];
   }));
   test::bend(mesh, [](const test::Point& p) { return test::Point{p[0] + 0.8 * p[2], p[1] - 0.5 * p[2], p[2]}; });
@@ -189,7 +189,7 @@ TEST(MeshScene, MeetsAReliefRayByRayAsTheHeightFieldTracerDoes) {
   const HeightField field = test::random_relief(64, 0.8);
   const PeriodicTile tile(field);
   const HeightFieldTracer relief(tile);
-  const MeshScene scene(test::closed_mesh(field), MeshPeriod{64.0_um, 64.0_um});
+  const MeshScene scene(to_closed_mesh(field), MeshPeriod{64.0_um, 64.0_um});
   for (const double theta_deg : {0.0, 45.0, 80.0}) {
     RayBatch rays = test::beam(tile, 4000, theta_deg, Side::Outside), mesh_rays = rays;
     const double scale = scene.frame().columns / 64.0;  // cells of the mesh's tile for one of the relief's

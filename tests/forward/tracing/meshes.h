@@ -40,15 +40,6 @@ inline TriangleMesh drawn_out(const std::vector<std::array<double, 2>>& profile,
   return mesh;
 }
 
-/// A periodic field as a mesh that closes at its ends.
-inline TriangleMesh closed_mesh(const HeightField& field) {
-  const Grid& grid = field.grid();
-  HeightField more({grid.columns + 1, grid.rows + 1, grid.pitch_x, grid.pitch_y}, Continuation::Mirrored);
-  for (std::size_t r = 0; r <= grid.rows; ++r)
-    for (std::size_t c = 0; c <= grid.columns; ++c) more.at(c, r) = field.at(c % grid.columns, r % grid.rows);
-  return to_mesh(more);
-}
-
 /// Moves every vertex.
 inline void bend(TriangleMesh& mesh, const std::function<Point(const Point&)>& move) {
   for (auto& vertex : mesh.vertices_um) {
