@@ -35,10 +35,10 @@ struct FilterContext {
   float nearest_back;
 };
 
-// The other side of a sheet without thickness, right where the ray left it.
+// The other side of a sheet without thickness, right where a ray left it outwards. One inside has to cross it.
 bool is_own_back(const FilterContext& context, float distance, float x, float y, float z) {
   constexpr float nearly_opposite = 0.98F;  // cos² of 8°
-  if (distance >= context.window) return false;
+  if (distance >= context.window || context.side == Side::Inside) return false;
   const float along = x * context.left_normal[0] + y * context.left_normal[1] + z * context.left_normal[2];
   return along < 0.0F && along * along > nearly_opposite * (x * x + y * y + z * z);
 }

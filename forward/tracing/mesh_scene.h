@@ -20,7 +20,8 @@ struct MeshPeriod {
 /// Frame    the macrosurface is z = const; the tile is as large as the period, or as the mesh where it has none, and
 ///          centred on the mesh. Rays are aimed at its mean height ∫z dA_z/∫dA_z, A_z the area seen from above.
 /// Sides    what lies where a face's corners run counter-clockwise is outside. A ray that comes upon the back of a
-///          face ends as RayEnd::Behind. Two sheets back to back may lie closer than the tracer can tell.
+///          face ends as RayEnd::Behind. A sheet of two faces back to back may have no thickness; a gap must have 2e-4
+///          cells (2e-7 of the extent).
 /// Ends     with a period the mesh repeats, also where it reaches over the ends of the tile; its ends must fit to
 ///          each other. Without, a ray that leaves beside the mesh ends as RayEnd::Sideways, and one that passes
 ///          through a hole as RayEnd::Below.

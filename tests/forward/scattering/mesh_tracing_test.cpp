@@ -176,33 +176,36 @@ TEST(UprightGrooves, SendLightBackAsUnfoldingSays) {
   }
 }
 
+// Two interfaces over a third.
+TriangleMesh pile(double thickness) {
+  TriangleMesh mesh;
+  test::add_level(mesh, 0.0, 0.0, 10.0, 10.0, 0.0);
+  test::add_level(mesh, 0.0, 0.0, 10.0, 10.0, 3.0 - thickness, false);
+  test::add_level(mesh, 0.0, 0.0, 10.0, 10.0, 3.0);
+  return mesh;
+}
+
 // Three interfaces that each reflect R of what comes, from either side: all three together 3R/(1 + 2R), since light
 // goes to and fro between them in any number of ways (a pile of plates; Stokes 1862).
 TEST(PileOfPlates, ReflectsAsStokesSays) {
-  TriangleMesh mesh;
-  test::add_level(mesh, 0.0, 0.0, 10.0, 10.0, 0.0);
-  test::add_level(mesh, 0.0, 0.0, 10.0, 10.0, 2.0, false);
-  test::add_level(mesh, 0.0, 0.0, 10.0, 10.0, 3.0);
-  const MeshPathTracer tracer(mesh, MeshPeriod{10.0_um, 10.0_um});
-  for (const double theta_deg : {0.0, 50.0}) {
-    const Bsdf bsdf = tracer.trace(options_at(theta_deg, 10.0, Dielectric{1.5}));
-    const double r = dielectric_fresnel(std::cos(theta_deg * std::numbers::pi / 180.0), 1.5).reflectance;
-    EXPECT_NEAR(bsdf.energy.reflected.value, 3.0 * r / (1.0 + 2.0 * r), 8.0 * bsdf.energy.reflected.standard_error);
-    EXPECT_LT(bsdf.energy.reflected.standard_error, 1e-3);
-    EXPECT_NEAR(bsdf.energy.reflected.value + bsdf.energy.transmitted.value, 1.0, rounding);
+  for (const double thickness : {1.0, 0.0}) {
+    const MeshPathTracer tracer(pile(thickness), MeshPeriod{10.0_um, 10.0_um});
+    for (const double theta_deg : {0.0, 50.0}) {
+      const Bsdf bsdf = tracer.trace(options_at(theta_deg, 10.0, Dielectric{1.5}));
+      const double r = dielectric_fresnel(std::cos(theta_deg * std::numbers::pi / 180.0), 1.5).reflectance;
+      EXPECT_NEAR(bsdf.energy.reflected.value, 3.0 * r / (1.0 + 2.0 * r), 8.0 * bsdf.energy.reflected.standard_error);
+      EXPECT_LT(bsdf.energy.reflected.standard_error, 1e-3);
+      EXPECT_NEAR(bsdf.energy.reflected.value + bsdf.energy.transmitted.value, 1.0, rounding);
+    }
   }
 }
 
 TEST(PileOfPlates, AbsorbsByTheLengthOfTheWayInside) {
-  // A plate that the light crosses once, and what is below it: T = (1 − R)³ e^(−βl) to first order in R; higher orders
-  // are within a bound of 3R².
-  TriangleMesh mesh;
-  test::add_level(mesh, 0.0, 0.0, 10.0, 10.0, 0.0);
-  test::add_level(mesh, 0.0, 0.0, 10.0, 10.0, 2.0, false);
-  test::add_level(mesh, 0.0, 0.0, 10.0, 10.0, 3.0);
+  // The light crosses the plate once: T = (1 − R)³ e^(−βl) to first order in R; higher orders are within a bound of
+  // 3R².
   constexpr double eta = 1.1, absorption = 0.4, theta = 50.0 * std::numbers::pi / 180.0;
-  const Bsdf bsdf =
-      MeshPathTracer(mesh, MeshPeriod{10.0_um, 10.0_um}).trace(options_at(50.0, 10.0, Dielectric{eta, absorption}));
+  const Bsdf bsdf = MeshPathTracer(pile(1.0), MeshPeriod{10.0_um, 10.0_um})
+                        .trace(options_at(50.0, 10.0, Dielectric{eta, absorption}));
   const double r = dielectric_fresnel(std::cos(theta), eta).reflectance;
   const double way = 1.0 / std::sqrt(1.0 - std::pow(std::sin(theta) / eta, 2));
   EXPECT_NEAR(bsdf.energy.transmitted.value, std::pow(1.0 - r, 3) * std::exp(-absorption * way),
