@@ -47,10 +47,9 @@ std::vector<std::uint32_t> number_used_samples(const std::vector<std::array<std:
 }
 
 std::array<float, 3> position_um(const HeightField& field, std::size_t sample) {
-  const auto column = static_cast<double>(sample % field.columns());
-  const auto row = static_cast<double>(sample / field.columns());
-  return {static_cast<float>(column * field.grid().pitch_x.um()), static_cast<float>(row * field.grid().pitch_y.um()),
-          field.heights_um()[sample]};
+  const std::size_t column = sample % field.columns(), row = sample / field.columns();
+  return {static_cast<float>(static_cast<double>(column) * field.grid().pitch_x.um()),
+          static_cast<float>(static_cast<double>(row) * field.grid().pitch_y.um()), field.heights_um()[sample]};
 }
 
 TriangleMesh mesh_of(const HeightField& field, const std::vector<std::array<float, 3>>& normals) {
