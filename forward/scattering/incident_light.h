@@ -41,13 +41,11 @@ private:
     double left, bottom, width, height;
   };
   [[nodiscard]] Direction direction_in_pixel(std::uint64_t index) const;
-  [[nodiscard]] float start_height(double aim_x, double aim_y) const;
 
   const PeriodicTile& tile_;
   const BeamFront* front_;
   Direction to_light_;
-  std::int64_t columns_, rows_;        ///< of the tile
-  double aimed_columns_, aimed_rows_;  ///< of its measured part
+  double aimed_columns_, aimed_rows_;  ///< of the tile's measured part
   std::optional<Pixel> pixel_;
   RandomStream directions_;
 };

@@ -28,6 +28,8 @@ public:
     return bound_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
                   static_cast<std::size_t>(column)];
   }
+  /// All of them, row after row.
+  [[nodiscard]] const float* heights() const { return bound_.data(); }
   /// The way (cells) that aims move for each unit of height: place = aim + (z − plane)·shift.
   [[nodiscard]] double shift_x() const { return shift_x_; }
   [[nodiscard]] double shift_y() const { return shift_y_; }
