@@ -28,6 +28,8 @@ constexpr Ints di;
 HWY_INLINE hn::Vec<Ints> cell_of(Vd place, double count, float* within) {
   const Vd cell = hn::Floor(place), tile = hn::Set(dd, count);
   hn::StoreU(hn::DemoteTo(df, hn::Sub(place, cell)), df, within);
+  const auto inside = hn::And(hn::Ge(cell, hn::Zero(dd)), hn::Lt(cell, tile));
+  if (hn::AllTrue(dd, inside)) return hn::DemoteTo(di, cell);
   // Exact: cells are whole numbers below 2^53, and a quotient of such is never rounded up to a whole number.
   return hn::DemoteTo(di, hn::Sub(cell, hn::Mul(tile, hn::Floor(hn::Div(cell, tile)))));
 }
