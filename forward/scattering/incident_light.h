@@ -41,7 +41,6 @@ private:
     double left, bottom, width, height;
   };
   [[nodiscard]] Direction direction_in_pixel(std::uint64_t index) const;
-  [[nodiscard]] float start_height(double aim_x, double aim_y) const;
   [[nodiscard]] bool met_a_copy(const AimedRays& rays, const HitBatch& hits, std::size_t k) const;
 
   SceneFrame frame_;
