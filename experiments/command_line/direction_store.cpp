@@ -25,7 +25,8 @@ void round_to_float(DirectionMap& map) {
 }
 
 void round_to_float(MapEstimate& estimate) {
-  for (DirectionMap* map : {&estimate.mean, &estimate.standard_error, &estimate.half_a, &estimate.half_b}) {
+  for (DirectionMap* map : {&estimate.mean, &estimate.standard_error, &estimate.half_a, &estimate.half_b,
+                            &estimate.low_95, &estimate.high_95}) {
     round_to_float(*map);
   }
 }

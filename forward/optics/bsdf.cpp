@@ -35,6 +35,8 @@ std::string prefix_of(const std::string& channel) {
 }
 std::string provenance_prefix(const std::string& channel) { return prefix_of(channel) + "provenance."; }
 
+bool has_intervals(const Bsdf& bsdf) { return !bsdf.reflection.low_95.empty(); }
+
 // One list of what the file holds, for the writer and the reader.
 template <class B>  // Bsdf or const Bsdf
 auto channels_of(B& bsdf) {
@@ -47,6 +49,12 @@ auto channels_of(B& bsdf) {
                        entry("transmission.standard_error", bsdf.transmission.standard_error),
                        entry("transmission.half_a", bsdf.transmission.half_a),
                        entry("transmission.half_b", bsdf.transmission.half_b)};
+  if (has_intervals(bsdf)) {
+    channels.push_back(entry("reflection.low_95", bsdf.reflection.low_95));
+    channels.push_back(entry("reflection.high_95", bsdf.reflection.high_95));
+    channels.push_back(entry("transmission.low_95", bsdf.transmission.low_95));
+    channels.push_back(entry("transmission.high_95", bsdf.transmission.high_95));
+  }
   for (std::size_t k = 0; k < bsdf.reflection_orders.size(); ++k) {
     channels.push_back(entry(order_name(k), bsdf.reflection_orders[k].mean));
     channels.push_back(entry(order_name(k) + ".standard_error", bsdf.reflection_orders[k].standard_error));
@@ -164,6 +172,13 @@ std::size_t order_count(const OIIO::ImageSpec& spec, const std::string& channel)
   return count;
 }
 
+// So that the list of channels names the intervals, where the file holds them.
+void expect_intervals(const OIIO::ImageSpec& spec, const std::string& channel, Bsdf& bsdf) {
+  const auto& names = spec.channelnames;
+  if (std::find(names.begin(), names.end(), "reflection.low_95" + ending_of(channel)) != names.end())
+    bsdf.reflection.low_95.resize(1);
+}
+
 void read_maps(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, const std::string& of_channel,
                const fs::path& path, Bsdf& bsdf) {
   const auto stride = static_cast<std::size_t>(spec.nchannels);
@@ -206,6 +221,7 @@ std::vector<Bsdf> read_channels_exr(const fs::path& path) {
     channels[c].grid = {static_cast<std::size_t>(spec.width), static_cast<std::size_t>(spec.height)};
     read_attributes(spec, channel, path, channels[c]);
     channels[c].reflection_orders.resize(order_count(spec, channel));
+    expect_intervals(spec, channel, channels[c]);
   }
   std::vector<float> pixels(channels[0].grid.size() * static_cast<std::size_t>(spec.nchannels));
   if (!file->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data())) {

@@ -40,10 +40,10 @@ struct Bsdf {
 };
 
 /// To OpenEXR: float channels "reflection", "reflection.standard_error", "reflection.half_a",
-/// "reflection.half_b", the same for "transmission", "reflection.order_1" … with standard errors where kept; incidence,
-/// energy and provenance as attributes "mezzotint:…" (all as text or double). The picture's first line is y = −1, and
-/// an attribute says so. Written aside, then renamed; the same result gives the same bytes. Values are rounded to
-/// float. A provenance value that is empty is not kept.
+/// "reflection.half_b", the same for "transmission", "….low_95" and "….high_95" where both maps have intervals,
+/// "reflection.order_1" … with standard errors where kept; incidence, energy and provenance as attributes "mezzotint:…"
+/// (all as text or double). The picture's first line is y = −1, and an attribute says so. Written aside, then renamed;
+/// the same result gives the same bytes. Values are rounded to float. A provenance value that is empty is not kept.
 /// @throws InvalidInput for a map that has not one value a bin, or a provenance key of more than 200
 ///         characters; DeviceError where it cannot be written.
 void write_exr(const Bsdf& bsdf, const std::filesystem::path& path);

@@ -44,12 +44,15 @@ using DirectionMap = std::vector<double>;
                                              const std::function<double(const Direction&)>& function,
                                              std::size_t samples = 16);
 
-/// A map that was estimated: its mean, its standard error, and the means of two independent halves.
+/// A map that was estimated: its mean, its standard error, and the means of two independent halves. Where it was
+/// estimated from hits also a 95 % interval a bin, which holds where a standard error does not: in bins of few hits or
+/// none. Empty for maps that are exact, and for those by order of interaction.
 struct MapEstimate {
   DirectionMap mean;
   DirectionMap standard_error;
   DirectionMap half_a;
   DirectionMap half_b;
+  DirectionMap low_95, high_95;
 };
 
 /// A dimensionless figure with its standard error.

@@ -21,10 +21,6 @@ constexpr std::array<RuleNode, 4> gauss = {{{0.069431844202973712, 0.17392742256
                                             {0.669990521792428132, 0.326072577431273071},
                                             {0.930568155797026288, 0.173927422568726929}}};
 
-// A part this narrow against the lobe (in units of α) is integrated to about 1e-6 of the peak.
-constexpr double narrow_enough = 0.7;
-// exp(−25) = 1e-11 of the peak: what lies further out is evaluated, but not refined.
-constexpr double far_away = 5.0;
 // Far more halvings than a lobe of α = 1e-4 needs on a single bin (about 2 × 16): a guard, not a setting.
 constexpr int deepest = 60;
 
@@ -58,10 +54,9 @@ Split split_of(const LitLobe& lobe, const BinPatch& patch, const Part& part) {
     }
   }
   const Eigen::Array2d extent = highest - lowest;
-  if (extent.maxCoeff() <= narrow_enough) return Split::None;
   // Slopes between the nine points may lie outside of their box; half as much again on every side is ample.
   const Eigen::Array2d nearest = (lowest - 0.5 * extent).max(-(highest + 0.5 * extent)).max(0.0);
-  if (nearest.square().sum() >= far_away * far_away) return Split::None;
+  if (extent.maxCoeff() <= lobe.smooth_over(std::sqrt(nearest.square().sum()))) return Split::None;
   double over_rows = 0.0, along_rows = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
     over_rows = std::max(over_rows, (slope[2][k] - slope[0][k]).abs().maxCoeff());
@@ -97,7 +92,7 @@ void add_part(const LitLobe& lobe, const BinPatch& patch, const Part& part, int 
 
 }  // namespace
 
-DirectionMap reflection_map(const BeckmannLobe& lobe, const Material& material, const DirectionAngles& to_light,
+DirectionMap reflection_map(const MicrofacetLobe& lobe, const Material& material, const DirectionAngles& to_light,
                             const DirectionGrid& grid) {
   require_valid(lobe);
   require_valid(grid);

@@ -14,7 +14,11 @@ void BatchTally::leave_all(Fate fate, std::span<const std::uint32_t> which, cons
     const double weight = double{weights[k]};
     map[bins[k]] += weight;
     sum += weight;
-    absolute += std::abs(weight);
+    const double size = std::abs(weight);
+    absolute += size;
+    squares[side][bins[k]] += weight * weight;
+    if (weight < 0.0) negative[side][bins[k]] += size;
+    if (size > largest_weight[side]) largest_weight[side] = size;
   }
   arrivals[side] += static_cast<double>(which.size());
   arrived_weight[side] += absolute;
@@ -41,6 +45,9 @@ void BatchTally::add(const BatchTally& other) {
   for (std::size_t map = 0; map < 2; ++map) {
     arrivals[map] += other.arrivals[map];
     arrived_weight[map] += other.arrived_weight[map];
+    add_map(squares[map], other.squares[map]);
+    add_map(negative[map], other.negative[map]);
+    largest_weight[map] = std::max(largest_weight[map], other.largest_weight[map]);
   }
   normal_fallbacks += other.normal_fallbacks;
   leaked += other.leaked;

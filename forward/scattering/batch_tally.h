@@ -21,7 +21,10 @@ using EnergyTally = std::array<double, fate_count>;
 /// samples, so that its sums have the same bits however many threads there are.
 struct BatchTally {
   explicit BatchTally(const DirectionGrid& direction_grid)
-      : grid(direction_grid), reflected(direction_grid.size()), transmitted(direction_grid.size()) {}
+      : grid(direction_grid), reflected(direction_grid.size()), transmitted(direction_grid.size()) {
+    squares.fill(DirectionMap(direction_grid.size()));
+    negative.fill(DirectionMap(direction_grid.size()));
+  }
 
   void add(Fate fate, double weight) { energy[static_cast<std::size_t>(fate)] += weight; }
   /// Light that leaves for good into a bin after `order` interactions: Reflected or Transmitted.
@@ -30,7 +33,11 @@ struct BatchTally {
     (map == 0 ? reflected : transmitted)[bin] += weight;
     if (map == 0 && !orders.empty()) orders[std::min<std::size_t>(order, orders.size()) - 1][bin] += weight;
     arrivals[map] += 1.0;
-    arrived_weight[map] += std::abs(weight);
+    const double size = std::abs(weight);
+    arrived_weight[map] += size;
+    squares[map][bin] += weight * weight;
+    if (weight < 0.0) negative[map][bin] += size;
+    if (size > largest_weight[map]) largest_weight[map] = size;
     add(fate, weight);
   }
   /// The same for the paths `which` of many.
@@ -52,6 +59,10 @@ struct BatchTally {
   std::uint64_t interactions = 0;
   /// Entries into each of the two maps (reflection, transmission), and the sum of their absolute weights.
   std::array<double, 2> arrivals{}, arrived_weight{};
+  /// Of each of the two maps, bin by bin: the sum of squared weights, and of the absolute weights of those below 0
+  /// (light that is taken from a splat); the largest absolute weight of all.
+  std::array<DirectionMap, 2> squares, negative;
+  std::array<double, 2> largest_weight{};
   std::uint64_t normal_fallbacks = 0;  ///< interactions whose interpolated normal could not be used
   std::vector<DirectionMap> orders;    ///< empty where not asked for
   double leaked = 0.0;                 ///< the part of CutOff that went through the surface by rounding

@@ -100,7 +100,7 @@ struct PathTracingOptions {
 ///          samples (fill them first), more than 2^36 paths, batches that are odd or fewer than 4. DeviceError
 ///          where Embree fails. MethodError where all light meets mirrored copies. FileError for a state that is
 ///          damaged or belongs to another run. What `progress` throws.
-/// Memory   12 bytes a cell (Embree: 170; four times as much for a mirrored field), 16 bytes a bin and batch.
+/// Memory   12 bytes a cell (Embree: 170; four times as much for a mirrored field), 48 bytes a bin and batch.
 /// Bits     the same for the same options and field with any number of threads (not where `seconds` ended it).
 /// Source   Frisvad 2019, slides "BRDF measurement", "Progressive updates"; the weight is corrected (the slides' one
 ///          multiplies by (ω_s·m)/cosθ_i, which belongs to points uniform on the microsurface).

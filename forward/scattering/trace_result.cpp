@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "forward/base/error.h"
+#include "forward/scattering/bin_interval.h"
 
 namespace mezzotint {
 
@@ -44,20 +45,45 @@ public:
     return splat_ == nullptr ? 0.0 : splat_total_ + sum_of(tally.total_energy) * per_ray_ - 1.0;
   }
 
+  // 1 less the share of the splat's light that is taken out. A splat without light has none to spread the excess by.
+  [[nodiscard]] double kept(const BatchTally& tally) const {
+    return splat_ == nullptr || !(splat_total_ > 0.0) ? 1.0 : 1.0 - excess(tally) / splat_total_;
+  }
+
   template <class Part>  // BatchTally → container of numbers
   void add_to(BatchStatistics& statistics, const Part& part) const {
     std::vector<double> values;
     for (const BatchTally& tally : state_.tallies) {
       const auto& traced = part(tally);
       values.resize(traced.size());
-      const double kept = 1.0 - (splat_ == nullptr ? 0.0 : excess(tally) / splat_total_);
+      const double dense_share = kept(tally);
       for (std::size_t k = 0; k < values.size(); ++k) {
         const double dense = splat_ == nullptr ? 0.0 : part(*splat_)[k] * per_facet_;
-        values[k] = traced[k] * per_ray_ + dense * kept;
+        values[k] = traced[k] * per_ray_ + dense * dense_share;
       }
       statistics.add(values);
     }
   }
+
+  // What the paths brought to a bin of a map; in shares of all light.
+  [[nodiscard]] BinHits hits(std::size_t map, std::size_t bin) const {
+    BinHits all;
+    const double per_path = per_ray_ / static_cast<double>(state_.tallies.size());
+    for (const BatchTally& tally : state_.tallies) {
+      all.sum += (map == 0 ? tally.reflected : tally.transmitted)[bin] * per_path;
+      all.squares += tally.squares[map][bin] * per_path * per_path;
+      all.negative += tally.negative[map][bin] * per_path;
+    }
+    return all;
+  }
+  // The largest that one path brought to any bin; a whole path where none came.
+  [[nodiscard]] double largest_weight(std::size_t map) const {
+    double largest = 0.0;
+    for (const BatchTally& tally : state_.tallies) largest = std::max(largest, tally.largest_weight[map]);
+    return (largest > 0.0 ? largest : 1.0) * per_ray_ / static_cast<double>(state_.tallies.size());
+  }
+  [[nodiscard]] bool corrects_a_splat() const { return splat_ != nullptr; }
+  [[nodiscard]] std::uint32_t batches() const { return static_cast<std::uint32_t>(state_.tallies.size()); }
 
   // What one path more would add to a bin of a map (0 reflection, 1 transmission), by the mean weight of all.
   [[nodiscard]] double one_arrival(std::size_t map, double bins) const {
@@ -97,6 +123,26 @@ MapEstimate estimate_map(const Shares& shares, std::size_t map, const std::vecto
     result.standard_error[k] = std::hypot(result.standard_error[k], one * scale[k]);
   }
   return result;
+}
+
+// Intervals: by Student's t where hits are enough, else by their number. What a splat holds is known but for the excess
+// that is taken out of it, which batches tell.
+void add_intervals(const Shares& shares, std::size_t map, const std::vector<double>& scale, MapEstimate& result) {
+  const double student = student_95(shares.batches() - 1), largest = shares.largest_weight(map);
+  result.low_95.resize(scale.size());
+  result.high_95.resize(scale.size());
+  for (std::size_t k = 0; k < scale.size(); ++k) {
+    const BinHits hits = shares.hits(map, k);
+    double below = student * result.standard_error[k], above = below;
+    if (hits.effective() < few_hits) {
+      const Interval few = few_hits_interval(hits, largest);
+      const double least = shares.corrects_a_splat() ? below : 0.0;
+      below = std::max(least, (hits.sum - few.low) * scale[k]);
+      above = std::max(least, (few.high - hits.sum) * scale[k]);
+    }
+    result.low_95[k] = std::max(0.0, result.mean[k] - below);
+    result.high_95[k] = result.mean[k] + above;
+  }
 }
 
 EnergyAudit audit(const MapEstimate& shares) {
@@ -180,6 +226,8 @@ TraceResult summarise(const PathTracingOptions& options, const TraceState& state
       estimate_map(shares, 0, scale, [](const BatchTally& t) -> const DirectionMap& { return t.reflected; });
   bsdf.transmission =
       estimate_map(shares, 1, scale, [](const BatchTally& t) -> const DirectionMap& { return t.transmitted; });
+  add_intervals(shares, 0, scale, bsdf.reflection);
+  add_intervals(shares, 1, scale, bsdf.transmission);
   for (std::uint32_t order = 0; order < options.bounce_orders; ++order) {
     bsdf.reflection_orders.push_back(estimate_map(
         shares, 0, scale, [order](const BatchTally& t) -> const DirectionMap& { return t.orders[order]; }));
@@ -189,7 +237,9 @@ TraceResult summarise(const PathTracingOptions& options, const TraceState& state
 }
 
 Bsdf splat_result(const PathTracingOptions& options, const BatchTally& splat, double facets) {
-  const double total = sum_of(splat.total_energy);
+  const double found = sum_of(splat.total_energy);
+  // Facets so steep that each sends its light into another have no single reflection at all: all is cut off.
+  const double total = found > 0.0 ? found : 1.0;
   const std::vector<double> scale = map_scale(options.grid, total);
   const auto exact = [&](const DirectionMap& tally) {
     DirectionMap map(tally.size());
@@ -202,12 +252,13 @@ Bsdf splat_result(const PathTracingOptions& options, const BatchTally& splat, do
   const auto share = [&](Fate fate) {
     return Estimate{splat.total_energy[static_cast<std::size_t>(fate)] / total, 0.0};
   };
-  bsdf.energy = {share(Fate::Reflected), share(Fate::Transmitted), share(Fate::Absorbed), {}, {}};
+  bsdf.energy = {
+      share(Fate::Reflected), share(Fate::Transmitted), share(Fate::Absorbed), {}, {1.0 - found / total, 0.0}};
   bsdf.provenance = {{"model", "slopes"},
                      {"control_variate", "none"},
                      {"material", to_string(options.material)},
                      {"normals", "geometric"},
-                     {"unadjusted_energy", fmt::format("{:.8g}", total / facets)}};
+                     {"unadjusted_energy", fmt::format("{:.8g}", found / facets)}};
   return bsdf;
 }
 

@@ -12,7 +12,7 @@ namespace mezzotint {
 
 namespace {
 
-constexpr std::string_view magic = "Mezzotint trace state 1\n";
+constexpr std::string_view magic = "Mezzotint trace state 2\n";
 
 // All parts of a state, in one order for the reader and the writer.
 template <class State, class Use>
@@ -29,6 +29,9 @@ void for_each_part(State& state, const Use& use) {
     number(tally.interactions);
     map(tally.arrivals);
     map(tally.arrived_weight);
+    for (auto& part : tally.squares) map(part);
+    for (auto& part : tally.negative) map(part);
+    map(tally.largest_weight);
     number(tally.normal_fallbacks);
     number(tally.leaked);
   }

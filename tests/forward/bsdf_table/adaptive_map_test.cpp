@@ -23,7 +23,7 @@ DirectionMap expanded(const AdaptiveMap& map, const DirectionGrid& grid) {
 
 TEST(AdaptiveMap, HoldsTheMapWhereNothingMayBeJoined) {
   for (const DirectionGrid grid : {DirectionGrid{64, 64}, DirectionGrid{33, 20}, DirectionGrid{1, 1}}) {
-    const DirectionMap map = reflection_map({0.3, 0.1, {}}, Mirror{}, degrees(50, 20), grid);
+    const DirectionMap map = reflection_map(BeckmannLobe{0.3, 0.1, {}}, Mirror{}, degrees(50, 20), grid);
     const JoinedMap joined = join_smooth_bins(grid, exact(map), 0.0);
     EXPECT_LT(relative_l2(grid, expanded(joined.map, grid), map), 1e-7);  // floats
     EXPECT_NEAR(joined.map.integral(), test::albedo(grid, map), 1e-7);
@@ -33,7 +33,7 @@ TEST(AdaptiveMap, HoldsTheMapWhereNothingMayBeJoined) {
 TEST(AdaptiveMap, JoinsSmoothBinsWithinItsToleranceAndKeepsTheAlbedo) {
   const DirectionGrid grid{128, 128};
   for (const double alpha : {0.03, 0.2, 0.6}) {
-    const DirectionMap map = reflection_map({alpha, alpha, {}}, Mirror{}, degrees(40, 20), grid);
+    const DirectionMap map = reflection_map(BeckmannLobe{alpha, alpha, {}}, Mirror{}, degrees(40, 20), grid);
     for (const double tolerance : {0.01, 0.05}) {
       const JoinedMap joined = join_smooth_bins(grid, exact(map), tolerance);
       const double seen = relative_l2(grid, expanded(joined.map, grid), map);
@@ -68,7 +68,7 @@ TEST(AdaptiveMap, TakesNoNoiseForStructure) {
 
 TEST(AdaptiveMap, ClipsWhatNoiseMadeNegativeAndKeepsTheAlbedo) {
   const DirectionGrid grid{16, 16};
-  DirectionMap map = reflection_map({0.3, 0.3, {}}, Mirror{}, degrees(40, 20), grid);
+  DirectionMap map = reflection_map(BeckmannLobe{0.3, 0.3, {}}, Mirror{}, degrees(40, 20), grid);
   const double before = test::albedo(grid, map);
   map[20] = -0.5;
   const JoinedMap joined = join_smooth_bins(grid, exact(map), 0.0);

@@ -216,6 +216,25 @@ TEST(BsdfFile, IsNotWrittenForMapsThatDoNotFitOrWhereThereIsNoFolder) {
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
+TEST(BsdfFile, KeepsTheIntervals) {
+  const test::TemporaryFolder folder;
+  Bsdf bsdf = example({9, 6});
+  write_exr(bsdf, folder / "none.exr");
+  EXPECT_TRUE(read_exr(folder / "none.exr").reflection.low_95.empty());
+  bsdf.reflection.low_95 = wavy(54, 20.0);
+  bsdf.reflection.high_95 = wavy(54, 21.0);
+  bsdf.transmission.low_95 = wavy(54, 22.0);
+  bsdf.transmission.high_95 = wavy(54, 23.0);
+  write_exr(bsdf, folder / "intervals.exr");
+  const Bsdf again = read_exr(folder / "intervals.exr");
+  expect_floats_of(bsdf.reflection.low_95, again.reflection.low_95);
+  expect_floats_of(bsdf.reflection.high_95, again.reflection.high_95);
+  expect_floats_of(bsdf.transmission.low_95, again.transmission.low_95);
+  expect_floats_of(bsdf.transmission.high_95, again.transmission.high_95);
+  bsdf.transmission.high_95.clear();  // all or none
+  EXPECT_THROW(write_exr(bsdf, folder / "intervals.exr"), InvalidInput);
+}
+
 TEST(BsdfFile, KeepsTheOrdersOfInteraction) {
   const test::TemporaryFolder folder;
   Bsdf bsdf = example({9, 6});
@@ -247,6 +266,10 @@ std::vector<Bsdf> coloured_example() {
     channels[c].energy.reflected = {0.1 * shade, 1e-3};
     channels[c].provenance["material"] = "dielectric:1.5" + std::to_string(c);
     channels[c].reflection_orders = {{wavy(54, 20.0 + shade), wavy(54, 1.0), {}, {}}};
+    for (MapEstimate* map : {&channels[c].reflection, &channels[c].transmission}) {
+      map->low_95 = wavy(54, 30.0 + shade);
+      map->high_95 = wavy(54, 40.0 + shade);
+    }
   }
   return channels;
 }
@@ -263,6 +286,7 @@ TEST(BsdfFileOfThreeChannels, MakesTheRoundTrip) {
     EXPECT_EQ(after[c].incidence.phi.degrees(), before[c].incidence.phi.degrees());
     for (std::size_t k = 0; k < 54; ++k) {
       EXPECT_EQ(after[c].reflection.mean[k], double{static_cast<float>(before[c].reflection.mean[k])});
+      EXPECT_EQ(after[c].transmission.high_95[k], double{static_cast<float>(before[c].transmission.high_95[k])});
       EXPECT_EQ(after[c].transmission.half_b[k], double{static_cast<float>(before[c].transmission.half_b[k])});
     }
     ASSERT_EQ(after[c].reflection_orders.size(), 1U);

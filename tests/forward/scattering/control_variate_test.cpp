@@ -86,6 +86,21 @@ TEST(ControlVariate, LowersTheErrorManyfoldAtNormalIncidence) {
   EXPECT_LT(corrected, 0.05 * plain);  // measured on 1024²: 0.0004 against 0.042
 }
 
+TEST(ControlVariate, WorksWhereNoFacetSendsLightStraightOut) {
+  // Grooves of slope 3 under light from above: the splat has no light, and rays bring all of it.
+  const HeightField grooves =
+      test::relief(64, 8, Continuation::Periodic, [](double c, double) { return 3.0 * std::abs(c - 32.0); });
+  PathTracingOptions options;
+  options.material = Mirror{};
+  options.samples = 1U << 12;
+  options.control_variate = ControlVariate::On;
+  PathTracer tracer(grooves);
+  EXPECT_NEAR(tracer.trace(options).energy.reflected.value, 1.0, 1e-6);  // single precision
+  const Bsdf splat = tracer.splat(options);
+  EXPECT_EQ(splat.energy.reflected.value, 0.0);
+  EXPECT_EQ(splat.energy.cut_off.value, 1.0);
+}
+
 TEST(ControlVariate, IsRefusedWhereItCannotBe) {
   PathTracingOptions options = options_of({0.0, 0.3, Mirror{}, 16});
   options.control_variate = ControlVariate::On;
