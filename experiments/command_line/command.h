@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -30,6 +31,9 @@ struct CommandContext {
   const Progress& progress;
   /// Prints a result: the JSON object with `--json`, the text otherwise.
   void print(const nlohmann::ordered_json& json, const std::string& text) const;
+  /// Says on stderr what must be known before the result is trusted; with `--json` it belongs into the object instead,
+  /// as an array "warnings".
+  void warn(const std::vector<std::string>& sentences) const;
 };
 
 /// A command's work; it returns Done or ToleranceMissed, and throws everything else.

@@ -9,6 +9,7 @@
 #include "experiments/version.h"
 #include "forward/base/quantity.h"
 #include "forward/ladder/ladder.h"
+#include "forward/optics/bsdf_warnings.h"
 #include "forward/scattering/path_tracing.h"
 #include "forward/surface/mesh_file.h"
 #include "measurement/formats/surface_file.h"
@@ -83,13 +84,22 @@ LadderOptions ladder_options(const BsdfArguments& arguments, const PathTracingOp
           .seed = tracing.seed};
 }
 
-Bsdf by_model(const BsdfArguments& arguments, const HeightField& relief, const PathTracingOptions& tracing,
-              const Progress& progress) {
-  if (arguments.model == "moments") return bsdf_from_moments(relief, ladder_options(arguments, tracing));
-  PathTracer tracer(relief);
+Bsdf by_rays(const BsdfArguments& arguments, const HeightField& relief, PathTracer& tracer,
+             const PathTracingOptions& tracing, const Progress& progress) {
   if (arguments.model == "slopes") return tracer.splat(tracing);
   if (arguments.model == "auto") return simulate_auto(relief, tracer, ladder_options(arguments, tracing), progress);
   return tracer.trace(tracing, progress);
+}
+
+Bsdf by_model(const BsdfArguments& arguments, const HeightField& relief, const PathTracingOptions& tracing,
+              const Progress& progress) {
+  const LadderOptions ladder = ladder_options(arguments, tracing);
+  if (arguments.model == "moments" && relief.missing_count() > 0) return bsdf_from_moments(relief, ladder);
+  PathTracer tracer(relief);
+  Bsdf bsdf = arguments.model == "moments" ? bsdf_from_moments(relief, ladder)
+                                           : by_rays(arguments, relief, tracer, tracing, progress);
+  add_warnings(bsdf, geometric_optics_warnings(tracer.facts(), ladder));
+  return bsdf;
 }
 
 void require_usable(const BsdfArguments& arguments) {
@@ -143,10 +153,10 @@ std::string entry_of(const Bsdf& bsdf, const std::string& key) {
   return found == bsdf.provenance.end() ? "" : found->second;
 }
 
-// Why `auto` chose what it chose, and what it warns of.
+// Why `auto` chose what it chose.
 std::string words_of(const Bsdf& bsdf) {
-  const std::string choice = entry_of(bsdf, "choice"), warnings = entry_of(bsdf, "warnings");
-  return (choice.empty() ? "" : "\n" + choice) + (warnings.empty() ? "" : "\nwarning: " + warnings);
+  const std::string choice = entry_of(bsdf, "choice");
+  return choice.empty() ? "" : "\n" + choice;
 }
 
 void add_arguments(CLI::App& app, BsdfArguments& arguments) {
@@ -168,7 +178,7 @@ void add_arguments(CLI::App& app, BsdfArguments& arguments) {
          "or auto: the cheapest that meets the tolerance")
       ->check(CLI::IsMember({"auto", "paths", "single", "slopes", "moments"}));
   app.add_option("--wavelength", arguments.wavelength_nm,
-                 "Of the light in nm, for auto's verdict on geometric optics (default 550)")
+                 "Of the light in nm, for the verdict on geometric optics (default 550)")
       ->check(in_range(200.0, 20000.0));
   app.add_option("--resolution", arguments.resolution, "Bins a side of the direction map (default 64)")
       ->check(CLI::Range(8, 1024));
@@ -207,7 +217,7 @@ Json figures_of(const Bsdf& bsdf) {
           {"model", bsdf.provenance.at("model")},
           {"choice", entry_of(bsdf, "choice")},
           {"assumption", entry_of(bsdf, "assumption")},
-          {"warnings", entry_of(bsdf, "warnings")},
+          {"warnings", warnings_of(bsdf.provenance)},
           {"relative_standard_error", relative_error(bsdf.grid, bsdf.reflection)}};
 }
 
@@ -235,10 +245,22 @@ std::string text_of(const std::vector<Bsdf>& channels, const std::string& output
   return assumption.empty() ? text : text + "\nassumed: " + assumption;
 }
 
+// What is wrong with which channel.
+std::vector<std::string> warnings_of(const std::vector<Bsdf>& channels) {
+  std::vector<std::string> sentences;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const std::string name = channel_name(c, channels.size());
+    for (const std::string& sentence : warnings_of(channels[c].provenance))
+      sentences.push_back(name.empty() ? sentence : name + ": " + sentence);
+  }
+  return sentences;
+}
+
 ExitStatus write_and_tell(const BsdfArguments& arguments, const CommandContext& context) {
   const std::vector<Bsdf> channels = compute(arguments, context);
   channels.size() == 1 ? write_exr(channels[0], arguments.output) : write_channels_exr(channels, arguments.output);
   context.print(json_of(channels, arguments.output), text_of(channels, arguments.output));
+  context.warn(warnings_of(channels));
   const bool fell_short =
       has_tolerance(arguments) && std::any_of(channels.begin(), channels.end(), [&](const Bsdf& bsdf) {
         return relative_error(bsdf.grid, bsdf.reflection) > tolerance_of(arguments);

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <map>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include "experiments/command_line/command.h"
@@ -11,7 +13,9 @@
 #include "forward/bsdf_table/bsdf_table_file.h"
 #include "forward/bsdf_table/build_bsdf_table.h"
 #include "forward/bsdf_table/reciprocity.h"
+#include "forward/bsdf_table/symmetry_check.h"
 #include "forward/ladder/ladder.h"
+#include "forward/surface/relief_warnings.h"
 #include "measurement/formats/surface_file.h"
 
 namespace mezzotint {
@@ -41,6 +45,12 @@ const std::map<std::string, SymmetryKind>& symmetry_kinds() {
                                                             {"isotropic", SymmetryKind::Isotropic}};
   return kinds;
 }
+
+struct Result {
+  BuiltBsdfTable built;
+  double asymmetry = 0.0;  ///< by one direction of the light that the asserted symmetry made unnecessary
+  std::vector<std::string> warnings;
+};
 
 double noise_of(const BsdfTableArguments& arguments) {
   return arguments.noise > 0.0 ? arguments.noise : arguments.tolerance / 4.0;
@@ -92,7 +102,33 @@ private:
   std::uint64_t seed_;
 };
 
-BuiltBsdfTable compute(const BsdfTableArguments& arguments, const CommandContext& context) {
+void look_at_symmetry(const BsdfTableArguments& arguments, const ComputeBsdf& ask, Result& result) {
+  const SymmetryCheck check = check_symmetry(result.built.table, ask);
+  result.asymmetry = check.difference;
+  if (!check.is_doubtful(arguments.tolerance)) return;
+  result.warnings.push_back(fmt::format(
+      "the sample does not have the symmetry \"{}\" that was asserted: light from beyond the computed azimuths gives a "
+      "lobe that differs by {:.2g} (relative L2) from the table's; use another --symmetry or --axis",
+      arguments.symmetry, check.difference));
+}
+
+Provenance provenance_of(const BsdfTableArguments& arguments, const Result& result, const std::string& material,
+                         std::uint64_t seed) {
+  const BsdfTableReport& report = result.built.report;
+  Provenance entries = {{"program", std::string("mezzotint ") + program_version},
+                        {"source", std::filesystem::path(arguments.input).filename().string()},
+                        {"material", material},
+                        {"model", arguments.model},
+                        {"noise", fmt::format("{}", noise_of(arguments))},
+                        {"tolerance", fmt::format("{}", arguments.tolerance)},
+                        {"largest_difference", fmt::format("{:.4g}", report.largest_difference)},
+                        {"tolerance_met", report.met ? "yes" : "no"},
+                        {"seed", std::to_string(seed)}};
+  if (!result.warnings.empty()) entries["warnings"] = fmt::format("{}", fmt::join(result.warnings, "\n"));
+  return entries;
+}
+
+Result compute(const BsdfTableArguments& arguments, const CommandContext& context) {
   require(std::filesystem::path(arguments.output).extension() == ".exr",
           arguments.output + ": a BSDF table is written as .exr");
   require_folder_of(arguments.output);
@@ -113,11 +149,12 @@ BuiltBsdfTable compute(const BsdfTableArguments& arguments, const CommandContext
   ProgressEvent latest{"bsdf table", 0.0, ""};
   const Progress overall = [&](const ProgressEvent& event) {
     latest = event;
-    report(context.progress, event.stage, event.fraction, event.note);
+    latest.fraction = std::min(event.fraction, 0.99);  // the symmetry is still to be looked at
+    report(context.progress, latest.stage, latest.fraction, latest.note);
   };
   const auto compute_one = [&](const DirectionAngles& to_light) {
     const std::string where = fmt::format("{:.1f}°, {:.1f}°", to_light.theta.degrees(), to_light.phi.degrees());
-    const Bsdf bsdf = rounded(directions.compute(to_light, [&](const ProgressEvent& event) {
+    Bsdf bsdf = rounded(directions.compute(to_light, [&](const ProgressEvent& event) {
       report(context.progress, latest.stage, latest.fraction, where + ": " + event.note);
     }));
     if (store) store->keep(bsdf);
@@ -125,17 +162,18 @@ BuiltBsdfTable compute(const BsdfTableArguments& arguments, const CommandContext
   };
   const auto find_one = [&](const DirectionAngles& to_light) { return store ? store->find(to_light) : std::nullopt; };
 
-  BuiltBsdfTable built = build_bsdf_table(compute_one, options, overall, find_one);
-  built.table.provenance = {{"program", std::string("mezzotint ") + program_version},
-                            {"source", std::filesystem::path(arguments.input).filename().string()},
-                            {"material", to_string(material)},
-                            {"model", arguments.model},
-                            {"noise", fmt::format("{}", noise_of(arguments))},
-                            {"tolerance", fmt::format("{}", arguments.tolerance)},
-                            {"largest_difference", fmt::format("{:.4g}", built.report.largest_difference)},
-                            {"tolerance_met", built.report.met ? "yes" : "no"},
-                            {"seed", std::to_string(seed)}};
-  return built;
+  Result result;
+  BuiltBsdfTable& built = result.built;
+  built = build_bsdf_table(compute_one, options, overall, find_one);
+  const auto ask = [&](const DirectionAngles& to_light) {
+    const std::optional<Bsdf> known = find_one(to_light);
+    return known ? *known : compute_one(to_light);
+  };
+  result.warnings = relief_warnings(relief);
+  look_at_symmetry(arguments, ask, result);
+  report(context.progress, latest.stage, 1.0);
+  built.table.provenance = provenance_of(arguments, result, to_string(material), seed);
+  return result;
 }
 
 void add_arguments(CLI::App& app, BsdfTableArguments& arguments) {
@@ -168,9 +206,8 @@ void add_arguments(CLI::App& app, BsdfTableArguments& arguments) {
                "Keep every computed direction in OUT.exr.parts, and go on from there: after Ctrl-C, or to refine");
 }
 
-nlohmann::ordered_json in_json(const std::string& file, const BuiltBsdfTable& built,
-                               const ReciprocityCheck& reciprocity) {
-  const BsdfTableReport& report = built.report;
+nlohmann::ordered_json in_json(const std::string& file, const Result& result, const ReciprocityCheck& reciprocity) {
+  const BsdfTableReport& report = result.built.report;
   return {{"written", file},
           {"incidences", report.incidences},
           {"computed", report.computed},
@@ -186,7 +223,9 @@ nlohmann::ordered_json in_json(const std::string& file, const BuiltBsdfTable& bu
            {{"pairs", reciprocity.pairs},
             {"lost_in_noise", reciprocity.lost_in_noise},
             {"rms_relative", Quantity{reciprocity.rms_relative, "1", {}}},
-            {"rms_in_standard_errors", reciprocity.rms_in_standard_errors}}}};
+            {"rms_in_standard_errors", reciprocity.rms_in_standard_errors}}},
+          {"asymmetry", Quantity{result.asymmetry, "1", {}}},
+          {"warnings", result.warnings}};
 }
 
 std::string what_to_do(const BsdfTableReport& report) {
@@ -223,11 +262,13 @@ Command add_bsdf_table(CLI::App& program) {
   auto arguments = std::make_shared<BsdfTableArguments>();
   add_arguments(*app, *arguments);
   return {app, [arguments](const CommandContext& context) {
-            const BuiltBsdfTable built = compute(*arguments, context);
+            const Result result = compute(*arguments, context);
+            const BuiltBsdfTable& built = result.built;
             write_bsdf_table(built.table, arguments->output);
             const ReciprocityCheck reciprocity = check_reciprocity(built.table);
-            context.print(in_json(arguments->output, built, reciprocity),
+            context.print(in_json(arguments->output, result, reciprocity),
                           in_words(arguments->output, built, reciprocity));
+            context.warn(result.warnings);
             return built.report.met ? ExitStatus::Done : ExitStatus::ToleranceMissed;
           }};
 }

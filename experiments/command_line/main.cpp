@@ -132,6 +132,11 @@ void CommandContext::print(const nlohmann::ordered_json& json, const std::string
   if (std::fflush(stdout) != 0) throw DeviceError("cannot write to standard output");
 }
 
+void CommandContext::warn(const std::vector<std::string>& sentences) const {
+  if (common.json || common.quiet) return;
+  for (const std::string& sentence : sentences) spdlog::warn("{}", sentence);
+}
+
 }  // namespace mezzotint
 
 int main(int count, char** arguments) {

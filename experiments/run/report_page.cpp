@@ -113,6 +113,7 @@ Report make_page(const Experiment& experiment, const RunResults& results) {
   for (const auto& warning : results.design.warnings) page.messages.push_back({MessageLevel::Warning, warning});
   if (is_ambiguous(results)) page.messages.push_back({MessageLevel::Warning, ambiguity_in_words});
   for (const auto& noisy : results.noisy_maps) page.messages.push_back({MessageLevel::Warning, noisy});
+  for (const auto& warning : results.map_warnings) page.messages.push_back({MessageLevel::Warning, warning});
   page.sections = {lobe_section(experiment, results), design_section(experiment, results),
                    print_section(experiment, results), measurement_section(results),
                    assumptions_section(experiment, results)};

@@ -7,6 +7,7 @@
 #include "experiments/run/patch.h"
 #include "experiments/run/simulate.h"
 #include "experiments/version.h"
+#include "forward/optics/bsdf_warnings.h"
 #include "measurement/correction/correction.h"
 #include "measurement/formats/surface_file.h"
 
@@ -58,6 +59,15 @@ void note_if_noisy(const Experiment& experiment, const char* name, const Inciden
       "the BSDF of the {} surface at θ = {:.3g}°, φ = {:.3g}° has a relative standard error of "
       "{:.3g}; {:.3g} was asked for: raise [simulation] samples",
       name, r.incidence.theta.degrees(), r.incidence.phi.degrees(), error, experiment.simulation.tolerance));
+}
+
+// What a BSDF warns of, with its surface and direction of the light.
+void note_warnings(const char* name, const IncidenceResult& r, const Bsdf& bsdf, std::vector<std::string>& warnings) {
+  for (const std::string& sentence : warnings_of(bsdf.provenance)) {
+    if (sentence.starts_with("the tolerance of ")) continue;  // note_if_noisy says it, and what setting mends it
+    warnings.push_back(fmt::format("the BSDF of the {} surface at θ = {:.3g}°, φ = {:.3g}°: {}", name,
+                                   r.incidence.theta.degrees(), r.incidence.phi.degrees(), sentence));
+  }
 }
 
 Json figure(double value, const char* unit, double standard_error) { return Quantity{value, unit, standard_error}; }
@@ -144,10 +154,14 @@ RunResults load_results(const Experiment& experiment, const RunFolder& folder) {
   for (std::size_t i = 0; i < experiment.simulation.incidences.size(); ++i) {
     results.incidences.push_back(load_incidence(experiment, folder, results, i));
     const IncidenceResult& r = results.incidences.back();
-    note_if_noisy(experiment, "predicted", r, r.predicted, results.noisy_maps);
-    note_if_noisy(experiment, "printed", r, r.printed, results.noisy_maps);
-    note_if_noisy(experiment, "measured", r, r.measured, results.noisy_maps);
-    if (r.traced_target) note_if_noisy(experiment, "target", r, *r.traced_target, results.noisy_maps);
+    const auto note = [&](const char* name, const Bsdf& bsdf) {
+      note_if_noisy(experiment, name, r, bsdf, results.noisy_maps);
+      note_warnings(name, r, bsdf, results.map_warnings);
+    };
+    note("predicted", r.predicted);
+    note("printed", r.printed);
+    note("measured", r.measured);
+    if (r.traced_target) note("target", *r.traced_target);
   }
   return results;
 }
@@ -172,6 +186,7 @@ nlohmann::ordered_json summarize(const Experiment& experiment, const RunResults&
                   {"comparison", results.comparison},
                   {"warnings", results.design.warnings}};
   for (const auto& noisy : results.noisy_maps) summary["warnings"].push_back(noisy);
+  for (const auto& warning : results.map_warnings) summary["warnings"].push_back(warning);
   if (is_ambiguous(results)) summary["warnings"].push_back(ambiguity_in_words);
   for (const auto& incidence : results.incidences) summary["bsdf"].push_back(incidence_summary(incidence));
   return summary;

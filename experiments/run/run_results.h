@@ -37,6 +37,7 @@ struct RunResults {
   std::vector<IncidenceResult> incidences;
   /// Maps that stayed above `[simulation] tolerance` at the largest number of samples, in words.
   std::vector<std::string> noisy_maps;
+  std::vector<std::string> map_warnings;  ///< what the BSDFs themselves warn of, but for their noise
 };
 
 /// Whether another placement of the measurement fits nearly as well, as on a periodic pattern.

@@ -8,7 +8,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "forward/ladder/gaussian_slopes.h"
+#include "forward/optics/bsdf_warnings.h"
 #include "forward/optics/microfacet.h"
+#include "forward/surface/relief_warnings.h"
 #include "forward/surface/slope_covariance.h"
 
 namespace mezzotint {
@@ -19,6 +22,7 @@ namespace {
 constexpr std::uint64_t least_pilot = std::uint64_t{1} << 10, most_pilot = std::uint64_t{1} << 14;
 // One side of a 95 % interval, as the pilot's own error is known from 8 batches (Student's t, 7 degrees of freedom).
 constexpr double bound = 1.9;
+constexpr double harmless_lost_light = 0.05;
 
 PathTracingOptions tracing_options(const LadderOptions& options) {
   PathTracingOptions tracing;
@@ -28,6 +32,21 @@ PathTracingOptions tracing_options(const LadderOptions& options) {
   tracing.samples = options.most_samples;
   tracing.seed = options.seed;
   return tracing;
+}
+
+// What Smith's term takes away for good, where the surface scatters it again. A lobe of an α below 0.2 hardly loses
+// any, and is too narrow for these bins.
+std::vector<std::string> lost_light_warnings(const BeckmannLobe& lobe, const DirectionAngles& incidence) {
+  if (std::min(lobe.alpha_x, lobe.alpha_y) < 0.2) return {};
+  const DirectionGrid coarse{16, 16};
+  const DirectionMap map = reflection_map(lobe, Mirror{}, incidence, coarse);
+  const auto areas = projected_solid_angles(coarse);
+  const double lost = 1.0 - std::inner_product(map.begin(), map.end(), areas.begin(), 0.0);
+  if (lost <= harmless_lost_light) return {};
+  return {
+      fmt::format("masking and shadowing take {:.2g} % of the light away for good, which the surface scatters again: "
+                  "the lobe is that of single reflections; --model paths follows the others",
+                  100.0 * lost)};
 }
 
 // Light that comes in at a slope of cotθ, and leaves no facet at a lower one, meets nothing twice, if no facet is
@@ -44,8 +63,11 @@ std::uint64_t pilot_paths(const HeightField& field) {
 }
 
 Forecast forecast_slopes(const LadderOptions& options, std::uint64_t paths, const MapEstimate& pilot,
-                         const DirectionMap& slopes) {
-  const MapDifference difference = relative_l2(options.grid, pilot, slopes);
+                         const Bsdf& slopes) {
+  if (!(slopes.energy.reflected.value > 0.0)) {
+    return {Rung::Slopes, 1.0, "no facet sends light straight out: all of it meets the surface again"};
+  }
+  const MapDifference difference = relative_l2(options.grid, pilot, slopes.reflection.mean);
   const double error = difference.corrected.value + bound * difference.corrected.standard_error;
   return {
       Rung::Slopes, error,
@@ -63,7 +85,7 @@ void explain(const Choice& choice, Bsdf& bsdf) {
   bsdf.provenance["model"] = std::string(name_of(choice.rung));
   bsdf.provenance["choice"] = fmt::format("{} was chosen. {}", name_of(choice.rung), fmt::join(words, "; "));
   bsdf.provenance["predicted_error"] = fmt::format("{:.4g}", choice.forecasts.back().error);
-  if (!choice.warnings.empty()) bsdf.provenance["warnings"] = fmt::format("{}", fmt::join(choice.warnings, "; "));
+  add_warnings(bsdf, choice.warnings);
 }
 
 }  // namespace
@@ -120,6 +142,10 @@ Bsdf bsdf_from_moments(const HeightField& field, const LadderOptions& options) {
                      {"lobe", fmt::format("Beckmann {:.6g} × {:.6g} at {:.4g}°, height-correlated Smith, single "
                                           "reflection; what it does not reflect is listed as cut off",
                                           lobe.alpha_x, lobe.alpha_y, lobe.rotation.degrees())}};
+  add_warnings(bsdf, relief_warnings(field));
+  add_warnings(bsdf, gaussian_slopes_warnings(field));
+  add_warnings(bsdf, lost_light_warnings(lobe, options.incidence));
+  add_warnings(bsdf, map_warnings(bsdf));
   return bsdf;
 }
 
@@ -148,7 +174,7 @@ Bsdf simulate_auto(const HeightField& field, PathTracer& tracer, const LadderOpt
     PathTracingOptions pilot = tracing;
     pilot.samples = pilot_paths(field);
     const Bsdf first = tracer.trace(pilot);
-    const Forecast forecast = forecast_slopes(options, pilot.samples, first.reflection, slopes.reflection.mean);
+    const Forecast forecast = forecast_slopes(options, pilot.samples, first.reflection, slopes);
     choice.forecasts.push_back(forecast);
     if (forecast.error <= options.tolerance) return finish(std::move(slopes));
   }

@@ -8,8 +8,10 @@
 
 #include "forward/base/digest.h"
 #include "forward/base/error.h"
+#include "forward/optics/bsdf_warnings.h"
 #include "forward/scattering/incident_light.h"
 #include "forward/scattering/scene_tracing.h"
+#include "forward/scattering/trace_warnings.h"
 
 namespace mezzotint {
 
@@ -68,12 +70,6 @@ FirstHits look_at_first_hits(const SceneFrame& frame, const MeshScene& scene, co
   return shares;
 }
 
-void add_warning(Provenance& provenance, const std::string& text) {
-  std::string& warnings = provenance["warnings"];
-  if (!warnings.empty()) warnings += "; ";
-  warnings += text;
-}
-
 std::string from_behind_text(double share) {
   return fmt::format(
       "{:.2g} % of the first hits met a face from behind: is the mesh oriented outwards, and large enough for this "
@@ -81,28 +77,27 @@ std::string from_behind_text(double share) {
       100.0 * share);
 }
 
-void tell(const FirstHits& first, Provenance& provenance) {
+void tell(const FirstHits& first, Bsdf& bsdf) {
   constexpr double few = 1e-3, worth_a_word = 0.01;
-  provenance["from_behind_share"] = fmt::format("{:.4g}", first.behind);
-  provenance["missed_share"] = fmt::format("{:.4g}", first.missed);
-  if (first.behind > few) add_warning(provenance, from_behind_text(first.behind));
+  bsdf.provenance["from_behind_share"] = fmt::format("{:.4g}", first.behind);
+  bsdf.provenance["missed_share"] = fmt::format("{:.4g}", first.missed);
+  if (first.behind > few) add_warnings(bsdf, {from_behind_text(first.behind)});
   if (first.missed > worth_a_word)
-    add_warning(provenance,
-                fmt::format("{:.2g} % of the light went past the mesh or through holes in it; the maps are of "
-                            "the rest",
-                            100.0 * first.missed));
+    add_warnings(bsdf, {fmt::format("{:.2g} % of the light went past the mesh or through holes in it; the maps are of "
+                                    "the rest",
+                                    100.0 * first.missed)});
 }
 
-void tell_losses(const EnergyAudit& energy, Provenance& provenance) {
+void tell_losses(Bsdf& bsdf) {
   constexpr double most_leaked = 1e-4, worth_a_word = 0.05;
-  const double leaked = std::stod(provenance.at("leaked_share"));
+  const double leaked = std::stod(bsdf.provenance.at("leaked_share"));
   if (leaked > most_leaked)
-    add_warning(provenance, fmt::format("{:.2g} % of the light was lost through the surface: holes, or faces that are "
-                                        "turned round",
-                                        100.0 * leaked));
-  if (energy.left_sideways.value > worth_a_word)
-    add_warning(provenance, fmt::format("{:.2g} % of the light left the patch sideways: it is small for its height",
-                                        100.0 * energy.left_sideways.value));
+    add_warnings(bsdf, {fmt::format("{:.2g} % of the light was lost through the surface: holes, or faces that are "
+                                    "turned round",
+                                    100.0 * leaked)});
+  if (bsdf.energy.left_sideways.value > worth_a_word)
+    add_warnings(bsdf, {fmt::format("{:.2g} % of the light left the patch sideways: it is small for its height",
+                                    100.0 * bsdf.energy.left_sideways.value)});
 }
 
 }  // namespace
@@ -124,8 +119,9 @@ Bsdf MeshPathTracer::trace(const PathTracingOptions& asked, const Progress& prog
                                 ? fmt::format("periodic, {:.6g} x {:.6g} um", frame.columns * frame.unit_um,
                                               frame.rows * frame.cell_y * frame.unit_um)
                                 : fmt::format("open, rays aimed {:.4g} um within the ends", band * frame.unit_um);
-  tell(first, bsdf.provenance);
-  tell_losses(bsdf.energy, bsdf.provenance);
+  tell(first, bsdf);
+  tell_losses(bsdf);
+  add_warnings(bsdf, trace_warnings(options, bsdf, true));
   return bsdf;
 }
 

@@ -15,12 +15,15 @@
 
 #include "forward/base/digest.h"
 #include "forward/base/error.h"
+#include "forward/optics/bsdf_warnings.h"
 #include "forward/scattering/batch_tally.h"
 #include "forward/scattering/incident_light.h"
 #include "forward/scattering/path_walk.h"
 #include "forward/scattering/scene_tracing.h"
 #include "forward/scattering/trace_result.h"
 #include "forward/scattering/trace_state.h"
+#include "forward/scattering/trace_warnings.h"
+#include "forward/surface/relief_warnings.h"
 #include "forward/tracing/beam_front.h"
 #include "forward/tracing/height_field_tracer.h"
 #include "forward/tracing/relief_scene.h"
@@ -35,6 +38,9 @@ constexpr std::uint64_t paths_per_slice = std::uint64_t{1} << 14;
 constexpr std::uint64_t paths_of_first_pass = std::uint64_t{1} << 15;
 // The splat's rows are summed in so many groups, whatever the number of threads.
 constexpr std::uint32_t splat_groups = 16;
+// A splat with a smaller share of the light has nothing to offer: nearly all of it meets the surface again (steep
+// mirrors), and the correction that makes the audit sum to 1 would divide by next to nothing.
+constexpr double least_splat_share = 0.1;
 
 }  // namespace
 
@@ -77,6 +83,12 @@ bool splat_is_possible(const PathTracingOptions& options, const PeriodicTile& ti
          (clear == nullptr || clear->absorption_per_um == 0.0);
 }
 
+double splat_share(const BatchTally& splat, const PeriodicTile& tile) {
+  double sum = 0.0;
+  for (const double light : splat.total_energy) sum += light;
+  return sum / (2.0 * tile.columns() * tile.rows());
+}
+
 double rms_gradient(const PeriodicTile& tile) {
   double sum = 0.0;
   for (std::uint32_t row = 0; row < tile.rows(); ++row) {
@@ -94,10 +106,10 @@ double rms_gradient(const PeriodicTile& tile) {
 bool use_splat(const PathTracingOptions& options, const PeriodicTile& tile, double gradient) {
   if (options.control_variate == ControlVariate::Off) return false;
   const bool possible = splat_is_possible(options, tile);
-  require(
-      possible || options.control_variate == ControlVariate::Automatic,
-      "the control variate needs geometric normals, a periodic field, one direction of the light, the flux estimator, "
-      "no absorption and the height-field tracer");
+  require(possible || options.control_variate == ControlVariate::Automatic,
+          "the splat of all facets (the model slopes, and the control variate) needs a periodic field, geometric "
+          "normals, one "
+          "direction of the light, the flux estimator, no absorption and the height-field tracer; use the model paths");
   const double steepness = gradient * std::tan(options.incidence.theta.radians());
   return possible && (options.control_variate == ControlVariate::On || steepness < control_variate_limit);
 }
@@ -105,7 +117,7 @@ bool use_splat(const PathTracingOptions& options, const PeriodicTile& tile, doub
 }  // namespace
 
 struct PathTracer::Scene {
-  explicit Scene(const HeightField& field) : tile(field) {}
+  explicit Scene(const HeightField& field) : tile(field), warnings(relief_warnings(field)) {}
 
   const HeightFieldTracer& height_field() {
     if (!fast) fast.emplace(tile);
@@ -134,6 +146,7 @@ struct PathTracer::Scene {
   const BatchTally& splat(const PathTracingOptions& options);
 
   PeriodicTile tile;
+  std::vector<std::string> warnings;  ///< of the relief itself
   std::optional<HeightFieldTracer> fast;
   std::optional<ReliefScene> triangles;
   std::optional<double> known_gradient;
@@ -333,14 +346,22 @@ Bsdf PathTracer::trace(const PathTracingOptions& options, const Progress& progre
     scene_->tile.prepare_normals();
     scene_->has_normals = true;
   }
-  const bool splat = use_splat(options, scene_->tile, scene_->gradient());
+  const BatchTally* splat = use_splat(options, scene_->tile, scene_->gradient()) ? &scene_->splat(options) : nullptr;
+  if (splat != nullptr && splat_share(*splat, scene_->tile) < least_splat_share) {
+    require(
+        options.control_variate == ControlVariate::Automatic,
+        "nearly no light leaves this relief after one interaction, so that the control variate has nothing to offer");
+    splat = nullptr;
+  }
   const bool height_field = options.tracer == TracerKind::HeightField;
   if (!height_field && !scene_->triangles) report(progress, "trace", 0.0, "building the tree of triangles");
   const HeightFieldTracer* fast = height_field ? &scene_->height_field() : nullptr;
-  Run run(scene_->tile.frame(), &scene_->tile, scene_->tracer(options.tracer), fast,
-          splat ? &scene_->splat(options) : nullptr, options, progress);
-  if (!options.state.empty()) run.resume(run_digest(scene_->digest(), options, splat));
-  return run.go().bsdf;
+  Run run(scene_->tile.frame(), &scene_->tile, scene_->tracer(options.tracer), fast, splat, options, progress);
+  if (!options.state.empty()) run.resume(run_digest(scene_->digest(), options, splat != nullptr));
+  Bsdf bsdf = run.go().bsdf;
+  add_warnings(bsdf, scene_->warnings);
+  add_warnings(bsdf, trace_warnings(options, bsdf));
+  return bsdf;
 }
 
 Bsdf PathTracer::splat(const PathTracingOptions& options) {
@@ -348,7 +369,10 @@ Bsdf PathTracer::splat(const PathTracingOptions& options) {
   PathTracingOptions wanted = options;
   wanted.control_variate = ControlVariate::On;
   (void)use_splat(wanted, scene_->tile, 0.0);
-  return splat_result(options, scene_->splat(options), 2.0 * scene_->tile.columns() * scene_->tile.rows());
+  Bsdf bsdf = splat_result(options, scene_->splat(options), 2.0 * scene_->tile.columns() * scene_->tile.rows());
+  add_warnings(bsdf, scene_->warnings);
+  add_warnings(bsdf, splat_warnings(bsdf, caught_light(scene_->tile, options.incidence)));
+  return bsdf;
 }
 
 PathTracer::ReliefFacts PathTracer::facts() {

@@ -237,10 +237,10 @@ TraceResult summarise(const PathTracingOptions& options, const TraceState& state
 }
 
 Bsdf splat_result(const PathTracingOptions& options, const BatchTally& splat, double facets) {
-  const double found = sum_of(splat.total_energy);
-  // Facets so steep that each sends its light into another have no single reflection at all: all is cut off.
-  const double total = found > 0.0 ? found : 1.0;
-  const std::vector<double> scale = map_scale(options.grid, total);
+  const double total = sum_of(splat.total_energy);
+  // Steep mirrors may send all of it back onto the surface; then there is nothing to divide, and all of it is cut off.
+  const double divisor = total > 0.0 ? total : 1.0;
+  const std::vector<double> scale = map_scale(options.grid, divisor);
   const auto exact = [&](const DirectionMap& tally) {
     DirectionMap map(tally.size());
     for (std::size_t k = 0; k < map.size(); ++k) map[k] = tally[k] * scale[k];
@@ -250,15 +250,15 @@ Bsdf splat_result(const PathTracingOptions& options, const BatchTally& splat, do
   bsdf.reflection = exact(splat.reflected);
   bsdf.transmission = exact(splat.transmitted);
   const auto share = [&](Fate fate) {
-    return Estimate{splat.total_energy[static_cast<std::size_t>(fate)] / total, 0.0};
+    return Estimate{splat.total_energy[static_cast<std::size_t>(fate)] / divisor, 0.0};
   };
-  bsdf.energy = {
-      share(Fate::Reflected), share(Fate::Transmitted), share(Fate::Absorbed), {}, {1.0 - found / total, 0.0}};
+  bsdf.energy = {share(Fate::Reflected), share(Fate::Transmitted), share(Fate::Absorbed), {}, {}};
+  if (total <= 0.0) bsdf.energy.cut_off.value = 1.0;
   bsdf.provenance = {{"model", "slopes"},
                      {"control_variate", "none"},
                      {"material", to_string(options.material)},
                      {"normals", "geometric"},
-                     {"unadjusted_energy", fmt::format("{:.8g}", found / facets)}};
+                     {"unadjusted_energy", fmt::format("{:.8g}", total / facets)}};
   return bsdf;
 }
 

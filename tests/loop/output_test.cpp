@@ -59,6 +59,23 @@ TEST(Output, IsOneJsonObjectWhereJsonIsAskedFor) {
   }
 }
 
+// A budget that cannot meet the tolerance: the file is written, and the user is told on either way.
+TEST(Output, HoldsWhatMustBeKnownBeforeItIsTrusted) {
+  const Workplace here;
+  ASSERT_EQ(here.mezzotint(words("synthesize pattern.toml -o relief.gwy")).status, 0);
+  const std::string line = "bsdf relief.gwy --incidence 20,0 --samples 1e3 --tolerance 1e-5 -o lobe.exr";
+  const Ending text = here.mezzotint(words(line));
+  EXPECT_EQ(text.status, 3);
+  EXPECT_NE(text.err.find("warning: the tolerance of 1e-05 was not met"), std::string::npos) << text.err;
+  const Ending json = here.mezzotint(words(line + " --json -q"));
+  EXPECT_TRUE(json.err.empty()) << json.err;
+  const nlohmann::json object = nlohmann::json::parse(json.out);
+  bool told = false;
+  for (const auto& warning : object.at("warnings"))
+    told = told || warning.get<std::string>().starts_with("the tolerance of 1e-05 was not met");
+  EXPECT_TRUE(told) << json.out;
+}
+
 TEST(Output, IsOneJsonObjectWhereTheTargetIsMissedToo) {
   const Ending ending = Workplace().mezzotint(words("run small.toml --set target.alpha_x=1.8 --json -q"));
   EXPECT_EQ(ending.status, 3);
