@@ -3,7 +3,8 @@
 // One translation unit, compiled once for each instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "forward/scattering/beam_rays.cpp"  // NOLINT
-#include <hwy/foreach_target.h>                                // IWYU pragma: keep
+#include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -34,6 +35,21 @@ HWY_INLINE hn::Vec<Ints> cell_of(Vd place, double count, bool repeats, float* wi
   return hn::DemoteTo(di, hn::Sub(cell, hn::Mul(tile, hn::Floor(hn::Div(cell, tile)))));
 }
 
+HWY_INLINE hn::Vec<Ints> front_index(const SceneFrame& frame, Vd aim_x, Vd aim_y) {
+  const auto line = hn::Mul(hn::DemoteTo(di, aim_y), hn::Set(di, static_cast<std::int32_t>(frame.columns)));
+  return hn::Add(line, hn::DemoteTo(di, aim_x));
+}
+
+// The front is as large as the relief and is looked at in one place a ray: it comes from far unless asked for early.
+HWY_INLINE void fetch_front(const SceneFrame& frame, const Beam& beam, const double* aim_x, const double* aim_y,
+                            std::size_t count) {
+  HWY_ALIGN std::int32_t index[8];
+  for (std::size_t k = 0; k < count; k += hn::Lanes(dd)) {
+    hn::Store(front_index(frame, hn::LoadU(dd, aim_x + k), hn::LoadU(dd, aim_y + k)), di, index);
+    for (std::size_t lane = 0; lane < hn::Lanes(dd); ++lane) hwy::Prefetch(beam.front->heights() + index[lane]);
+  }
+}
+
 // `count` is a multiple of the vectors' width; arrays have room for it.
 void aim(const SceneFrame& frame, const Beam& beam, const double* aim_x, const double* aim_y, std::size_t first,
          std::size_t count, RayBatch& rays) {
@@ -43,14 +59,12 @@ void aim(const SceneFrame& frame, const Beam& beam, const double* aim_x, const d
   const Vd shift_x = hn::Set(dd, light.x() / light.z()), shift_y = hn::Set(dd, light.y() / (light.z() * frame.cell_y));
   const auto direction = [](double value) { return hn::Set(df, static_cast<float>(-value)); };
   const auto dx = direction(light.x()), dy = direction(light.y()), dz = direction(light.z());
+  if (beam.front != nullptr) fetch_front(frame, beam, aim_x, aim_y, count);
   for (std::size_t k = 0; k < count; k += hn::Lanes(dd)) {
     const std::size_t at = first + k;
     const Vd x = hn::LoadU(dd, aim_x + k), y = hn::LoadU(dd, aim_y + k);
     auto z = hn::Set(df, beam.top);
-    if (beam.front != nullptr) {
-      const auto line = hn::Mul(hn::DemoteTo(di, y), hn::Set(di, static_cast<std::int32_t>(frame.columns)));
-      z = hn::GatherIndex(df, beam.front->heights(), hn::Add(line, hn::DemoteTo(di, x)));
-    }
+    if (beam.front != nullptr) z = hn::GatherIndex(df, beam.front->heights(), front_index(frame, x, y));
     const Vd rise = hn::Sub(hn::PromoteTo(dd, z), hn::Set(dd, beam.plane));
     const Vd start_x = hn::Add(x, hn::Mul(rise, shift_x)), start_y = hn::Add(y, hn::Mul(rise, shift_y));
     hn::StoreU(cell_of(start_x, columns, repeats, rays.x.data() + at), di, rays.cell_x.data() + at);

@@ -3,7 +3,8 @@
 // One translation unit, compiled once for each instruction set; the best that the machine has is taken at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "forward/tracing/height_field_tracer.cpp"  // NOLINT
-#include <hwy/foreach_target.h>                                       // IWYU pragma: keep
+#include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
 #include <vector>
@@ -127,11 +128,26 @@ private:
   HWY_INLINE Vi flip_x(const Lanes& lanes) const { return hn::ShiftRight<31>(hn::ShiftLeft<26>(lanes.state)); }
   HWY_INLINE Vi flip_y(const Lanes& lanes) const { return hn::ShiftRight<31>(hn::ShiftLeft<25>(lanes.state)); }
 
+  // A ray from afar comes to a cell that nobody has looked at; its heights are asked for some vectors ahead.
+  HWY_INLINE void fetch(std::size_t first) const {
+    if (first >= count_ || rays_.left[first] != no_half) return;
+    const float* bounds = inside ? relief_.below() : relief_.above();
+    const std::size_t line = static_cast<std::size_t>(relief_.columns) + 1, end = HWY_MIN(first + width(), count_);
+    for (std::size_t k = first; k < end; ++k) {
+      const auto x = rays_.cell_x[k], y = rays_.cell_y[k];
+      const float* samples = relief_.samples() + static_cast<std::size_t>(y) * line + static_cast<std::size_t>(x);
+      hwy::Prefetch(bounds + relief_.node(0, x, y));
+      hwy::Prefetch(samples);
+      hwy::Prefetch(samples + line);
+    }
+  }
+
   // The next rays of the batch, so far as they are on this side. One that rises more steeply than any facet has left
   // the relief for good; the others look at their own cell first.
   HWY_INLINE void admit() {
     const std::size_t first = next_;
     next_ += width();
+    fetch(first + 4 * width());
     const Vi side = hn::PromoteTo(di_, hn::LoadU(bytes_, bytes(rays_.side) + first));
     const Vi number = hn::Add(hn::Iota(di_, 0), hn::Set(di_, static_cast<std::int32_t>(first)));
     const Mi ours = hn::And(hn::Eq(side, hn::Set(di_, inside ? 1 : 0)),
