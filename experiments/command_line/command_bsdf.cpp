@@ -1,7 +1,10 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "experiments/command_line/command.h"
+#include "experiments/command_line/mesh_simulation.h"
 #include "experiments/command_line/option_checks.h"
 #include "experiments/report/bsdf_page.h"
 #include "experiments/version.h"
@@ -9,6 +12,7 @@
 #include "forward/ladder/ladder.h"
 #include "forward/optics/bsdf_warnings.h"
 #include "forward/scattering/path_tracing.h"
+#include "forward/surface/mesh_file.h"
 #include "measurement/formats/surface_file.h"
 
 namespace mezzotint {
@@ -33,6 +37,7 @@ struct BsdfArguments {
   std::uint32_t max_bounces = 64;
   std::uint32_t bounce_orders = 0;
   bool resume = false;
+  MeshArguments mesh;
 };
 
 constexpr double default_tolerance = 0.02;
@@ -48,13 +53,17 @@ double tolerance_of(const BsdfArguments& arguments) {
   return has_tolerance(arguments) ? default_tolerance : 0.0;
 }
 
-std::filesystem::path state_file(const BsdfArguments& arguments) { return arguments.output + ".state"; }
+// The channel is "R", "G", "B", or empty where there is one.
+std::filesystem::path state_file(const BsdfArguments& arguments, const std::string& channel) {
+  return arguments.output + (channel.empty() ? "" : "." + channel) + ".state";
+}
 
-PathTracingOptions tracing_options(const BsdfArguments& arguments, std::uint64_t seed) {
+PathTracingOptions tracing_options(const BsdfArguments& arguments, const Material& material, const std::string& channel,
+                                   std::uint64_t seed) {
   PathTracingOptions options;
   options.incidence = {Angle::from_degrees(arguments.incidence[0]), Angle::from_degrees(arguments.incidence[1])};
   options.grid = {arguments.resolution, arguments.resolution};
-  options.material = parse_material(arguments.material);
+  options.material = material;
   options.samples = static_cast<std::uint64_t>(arguments.samples > 0.0 ? arguments.samples : most_samples);
   options.tolerance = tolerance_of(arguments);
   options.seconds = arguments.seconds;
@@ -63,7 +72,7 @@ PathTracingOptions tracing_options(const BsdfArguments& arguments, std::uint64_t
   options.estimator = arguments.estimator == "slides" ? Estimator::Slides : Estimator::Flux;
   options.normals = arguments.normals == "interpolated" ? NormalKind::Interpolated : NormalKind::Geometric;
   options.tracer = arguments.tracer == "embree" ? TracerKind::Embree : TracerKind::HeightField;
-  if (arguments.resume) options.state = state_file(arguments);
+  if (arguments.resume) options.state = state_file(arguments, channel);
   options.seed = seed;
   return options;
 }
@@ -95,23 +104,53 @@ Bsdf by_model(const BsdfArguments& arguments, const HeightField& relief, const P
   return bsdf;
 }
 
-Bsdf compute(const BsdfArguments& arguments, const CommandContext& context) {
+void require_usable(const BsdfArguments& arguments) {
+  const bool traces = arguments.model == "paths" || arguments.model == "single";
   const bool budget = arguments.samples > 0.0 || arguments.seconds > 0.0 || arguments.resume;
-  require(!budget || arguments.model == "paths" || arguments.model == "single",
-          "--samples, --time and --resume are for the models paths and single; " + arguments.model +
-              " knows by itself how much work it needs");
+  require(!budget || traces, "--samples, --time and --resume are for the models paths and single; " + arguments.model +
+                                 " knows by itself how much work it needs");
   require(std::filesystem::path(arguments.output).extension() == ".exr",
           arguments.output + ": a BSDF is written as .exr");
   require(arguments.incidence[0] >= 0.0 && arguments.incidence[0] <= 89.0,
           "--incidence: the light comes from above, THETA from 0 to 89; a lower ray would cross the relief for ever");
+  const bool is_mesh = is_mesh_path(arguments.input);
+  require(!is_mesh || traces,
+          "a mesh is traced: --model paths or single; " + arguments.model + " is for height fields");
+  require(is_mesh || (arguments.mesh.period_um.empty() && arguments.mesh.unit.empty()),
+          "--periodic and --mesh-unit are for meshes (.obj, .ply, .stl); a height field knows both by itself");
   require_folder_of(arguments.output);
-  if (!arguments.report.empty()) require_folder_of(arguments.report);
-  const SurfaceFile surface = read_surface(arguments.input);
+  if (arguments.report.empty()) return;
+  require_folder_of(arguments.report);
+  require(parse_materials(arguments.material).size() == 1, "--report shows one channel: give one index of refraction");
+}
+
+Simulation simulation_of(const BsdfArguments& arguments) {
+  if (is_mesh_path(arguments.input)) return simulation_of_mesh(arguments.input, arguments.mesh);
+  const auto relief = std::make_shared<const HeightField>(read_surface(arguments.input).field);
+  return [relief, &arguments](const PathTracingOptions& tracing, const Progress& progress) {
+    return by_model(arguments, *relief, tracing, progress);
+  };
+}
+
+// One BSDF for each channel, by the same random numbers; one after the other, since each index refracts its own way.
+std::vector<Bsdf> compute(const BsdfArguments& arguments, const CommandContext& context) {
+  require_usable(arguments);
+  const std::vector<Material> materials = parse_materials(arguments.material);
+  const Simulation simulate = simulation_of(arguments);
   const std::uint64_t seed = context.common.seed >= 0 ? static_cast<std::uint64_t>(context.common.seed) : 1;
-  Bsdf bsdf = by_model(arguments, surface.field, tracing_options(arguments, seed), context.progress);
-  bsdf.provenance["program"] = std::string("mezzotint ") + program_version;
-  bsdf.provenance["source"] = std::filesystem::path(arguments.input).filename().string();
-  return bsdf;
+  std::vector<Bsdf> channels;
+  for (const Material& material : materials) {
+    const std::string channel = channel_name(channels.size(), materials.size());
+    const auto done = static_cast<double>(channels.size()), all = static_cast<double>(materials.size());
+    const Progress progress = [&](const ProgressEvent& event) {
+      report(context.progress, event.stage, (done + event.fraction) / all,
+             channel.empty() ? event.note : channel + ": " + event.note);
+    };
+    channels.push_back(simulate(tracing_options(arguments, material, channel, seed), progress));
+    channels.back().provenance["program"] = std::string("mezzotint ") + program_version;
+    channels.back().provenance["source"] = std::filesystem::path(arguments.input).filename().string();
+  }
+  return channels;
 }
 
 std::string entry_of(const Bsdf& bsdf, const std::string& key) {
@@ -133,15 +172,19 @@ void write_page(const BsdfArguments& arguments, const Bsdf& bsdf, double error) 
 }
 
 void add_arguments(CLI::App& app, BsdfArguments& arguments) {
-  app.add_option("HEIGHT", arguments.input, "Surface file without missing samples; levelled")->required();
+  app.add_option("HEIGHT", arguments.input,
+                 "Surface file without missing samples, levelled; or a mesh (.obj, .ply, .stl)")
+      ->required();
   app.add_option("--output,-o", arguments.output, "EXR to write")->required();
   app.add_option("--report", arguments.report, "HTML page to write too: maps, energy, error while tracing, choice");
   app.add_option("--incidence", arguments.incidence, "THETA,PHI of the light in degrees")
       ->delimiter(',')
       ->expected(2)
       ->required();
-  app.add_option("--material", arguments.material,
-                 "mirror, dielectric:ETA[,ABSORPTION per um] or conductor:ETA,KAPPA (default dielectric:1.5)");
+  app.add_option(
+      "--material", arguments.material,
+      "mirror, dielectric:ETA[,ABSORPTION per um] or conductor:ETA,KAPPA (default dielectric:1.5); three for R, "
+      "G and B: dielectric:1.51/1.52/1.53");
   app.add_option(
          "--model", arguments.model,
          "paths (default), single (no second interaction), slopes (all facets, no rays), moments (a Gaussian lobe), "
@@ -172,39 +215,82 @@ void add_arguments(CLI::App& app, BsdfArguments& arguments) {
       ->check(CLI::IsMember({"height-field", "embree"}));
   app.add_option("--estimator", arguments.estimator, "flux (default) or slides, for comparison only")
       ->check(CLI::IsMember({"flux", "slides"}));
+  add_mesh_arguments(app, arguments.mesh);
+}
+
+using Json = nlohmann::ordered_json;
+
+Json figures_of(const Bsdf& bsdf) {
+  const auto share = [](const Estimate& e) { return Quantity{e.value, "1", e.standard_error}; };
+  return {{"albedo", share(bsdf.energy.reflected)},
+          {"transmitted", share(bsdf.energy.transmitted)},
+          {"absorbed", share(bsdf.energy.absorbed)},
+          {"left_sideways", share(bsdf.energy.left_sideways)},
+          {"cut_off", share(bsdf.energy.cut_off)},
+          {"model", bsdf.provenance.at("model")},
+          {"choice", entry_of(bsdf, "choice")},
+          {"assumption", entry_of(bsdf, "assumption")},
+          {"warnings", warnings_of(bsdf.provenance)},
+          {"relative_standard_error", relative_error(bsdf.grid, bsdf.reflection)}};
+}
+
+Json json_of(const std::vector<Bsdf>& channels, const std::string& output) {
+  Json json = {{"written", output}};
+  if (channels.size() == 1) {
+    json.update(figures_of(channels[0]));
+    return json;
+  }
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    json["channels"][channel_name(c, channels.size())] = figures_of(channels[c]);
+  return json;
+}
+
+std::string text_of(const std::vector<Bsdf>& channels, const std::string& output) {
+  std::string text = fmt::format("wrote {}:", output);
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const Bsdf& bsdf = channels[c];
+    text +=
+        fmt::format("{}{} albedo {:.5f} ± {:.2g}, relative standard error of the map {:.2g}{}",
+                    channels.size() == 1 ? "" : "\n", channel_name(c, channels.size()), bsdf.energy.reflected.value,
+                    bsdf.energy.reflected.standard_error, relative_error(bsdf.grid, bsdf.reflection), words_of(bsdf));
+  }
+  const std::string assumption = entry_of(channels[0], "assumption");
+  return assumption.empty() ? text : text + "\nassumed: " + assumption;
+}
+
+// What is wrong with which channel.
+std::vector<std::string> warnings_of(const std::vector<Bsdf>& channels) {
+  std::vector<std::string> sentences;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const std::string name = channel_name(c, channels.size());
+    for (const std::string& sentence : warnings_of(channels[c].provenance))
+      sentences.push_back(name.empty() ? sentence : name + ": " + sentence);
+  }
+  return sentences;
+}
+
+ExitStatus write_and_tell(const BsdfArguments& arguments, const CommandContext& context) {
+  const std::vector<Bsdf> channels = compute(arguments, context);
+  channels.size() == 1 ? write_exr(channels[0], arguments.output) : write_channels_exr(channels, arguments.output);
+  write_page(arguments, channels[0], relative_error(channels[0].grid, channels[0].reflection));
+  context.print(json_of(channels, arguments.output), text_of(channels, arguments.output));
+  context.warn(warnings_of(channels));
+  const bool fell_short =
+      has_tolerance(arguments) && std::any_of(channels.begin(), channels.end(), [&](const Bsdf& bsdf) {
+        return relative_error(bsdf.grid, bsdf.reflection) > tolerance_of(arguments);
+      });
+  return fell_short ? ExitStatus::ToleranceMissed : ExitStatus::Done;
 }
 
 }  // namespace
 
 Command add_bsdf(CLI::App& program) {
   auto* app = program.add_subcommand(
-      "bsdf", "The BSDF of a relief by path tracing (with a standard error for every bin), or from its slope moments");
+      "bsdf",
+      "The BSDF of a relief or a mesh by path tracing (with a standard error for every bin), or from slope moments");
   auto arguments = std::make_shared<BsdfArguments>();
   add_arguments(*app, *arguments);
-  return {app, [arguments](const CommandContext& context) {
-            const Bsdf bsdf = compute(*arguments, context);
-            write_exr(bsdf, arguments->output);
-            const double error = relative_error(bsdf.grid, bsdf.reflection);
-            write_page(*arguments, bsdf, error);
-            const Estimate& albedo = bsdf.energy.reflected;
-            context.print(
-                {{"written", arguments->output},
-                 {"albedo", Quantity{albedo.value, "1", albedo.standard_error}},
-                 {"transmitted", Quantity{bsdf.energy.transmitted.value, "1", bsdf.energy.transmitted.standard_error}},
-                 {"absorbed", Quantity{bsdf.energy.absorbed.value, "1", bsdf.energy.absorbed.standard_error}},
-                 {"left_sideways",
-                  Quantity{bsdf.energy.left_sideways.value, "1", bsdf.energy.left_sideways.standard_error}},
-                 {"cut_off", Quantity{bsdf.energy.cut_off.value, "1", bsdf.energy.cut_off.standard_error}},
-                 {"model", bsdf.provenance.at("model")},
-                 {"choice", entry_of(bsdf, "choice")},
-                 {"warnings", warnings_of(bsdf.provenance)},
-                 {"relative_standard_error", error}},
-                fmt::format("wrote {}: albedo {:.5f} ± {:.2g}, relative standard error of the map {:.2g}{}",
-                            arguments->output, albedo.value, albedo.standard_error, error, words_of(bsdf)));
-            context.warn(warnings_of(bsdf.provenance));
-            const bool fell_short = has_tolerance(*arguments) && error > tolerance_of(*arguments);
-            return fell_short ? ExitStatus::ToleranceMissed : ExitStatus::Done;
-          }};
+  return {app, [arguments](const CommandContext& context) { return write_and_tell(*arguments, context); }};
 }
 
 }  // namespace mezzotint

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -8,6 +10,7 @@
 #include "forward/base/quantity.h"
 #include "forward/bsdf_table/bsdf_table_file.h"
 #include "forward/optics/bsdf.h"
+#include "forward/surface/mesh_file.h"
 #include "measurement/formats/surface_file.h"
 
 namespace mezzotint {
@@ -54,6 +57,39 @@ Json describe(const Bsdf& bsdf) {
           {"provenance", bsdf.provenance}};
 }
 
+Json describe(const std::vector<Bsdf>& channels) {
+  if (channels.size() == 1) return describe(channels[0]);
+  Json json = describe(channels[0]);
+  for (const char* of_one : {"albedo", "transmitted", "absorbed", "left_sideways", "cut_off", "provenance"})
+    json.erase(of_one);
+  json["channels"] = "R, G, B";
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const Json channel = describe(channels[c]);
+    for (const auto& [key, value] : channel.items()) {
+      if (!json.contains(key)) json[channel_name(c, channels.size()) + "." + key] = value;
+    }
+  }
+  return json;
+}
+
+Json describe(const MeshFile& file) {
+  std::array<double, 3> low = {}, high = {};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto [least, most] = std::minmax_element(file.mesh.vertices_um.begin(), file.mesh.vertices_um.end(),
+                                                   [axis](const auto& a, const auto& b) { return a[axis] < b[axis]; });
+    low[axis] = double{(*least)[axis]};
+    high[axis] = double{(*most)[axis]};
+  }
+  return {{"format", "mesh, " + file.format},
+          {"triangles", file.mesh.triangles.size()},
+          {"vertices", file.mesh.vertices_um.size()},
+          {"width", Quantity{high[0] - low[0], "µm", {}}},
+          {"depth", Quantity{high[1] - low[1], "µm", {}}},
+          {"lowest", Quantity{low[2], "µm", {}}},
+          {"highest", Quantity{high[2], "µm", {}}},
+          {"assumption", file.assumption}};
+}
+
 Json describe(const BsdfTable& table) {
   Json directions = Json::object();
   for (const BsdfTableNode& node : table.nodes) {
@@ -92,8 +128,9 @@ Json describe_any(const std::filesystem::path& path) {
   if (path.extension() == ".uvj") return describe(read_uvj(path));
   // An OpenEXR file is a relief where it has a sidecar, else a BSDF.
   if (begins_with(path, "\x76\x2f\x31\x01") && !has_sidecar(path)) {
-    return is_bsdf_table(path) ? describe(read_bsdf_table(path)) : describe(read_exr(path));
+    return is_bsdf_table(path) ? describe(read_bsdf_table(path)) : describe(read_channels_exr(path));
   }
+  if (is_mesh_path(path)) return describe(read_mesh(path));
   return describe(read_surface(path));
 }
 
@@ -138,8 +175,9 @@ Command describing_command(CLI::App& program, const char* name, const char* help
 }  // namespace
 
 Command add_info(CLI::App& program) {
-  return describing_command(
-      program, "info", "What a file is: surface, BSDF or job; size, spacing, units, range, provenance", describe_any);
+  return describing_command(program, "info",
+                            "What a file is: surface, mesh, BSDF or job; size, spacing, units, range, provenance",
+                            describe_any);
 }
 
 Command add_job(CLI::App& program) {

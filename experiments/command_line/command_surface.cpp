@@ -186,16 +186,20 @@ Command add_mesh(CLI::App& program) {
       program.add_subcommand("mesh", "A relief to a triangle mesh with angle-weighted normals and a material file");
   struct Arguments : FileArguments {
     double index = 1.5;
+    bool close = false;
   };
   auto arguments = std::make_shared<Arguments>();
   add_surface_input(*app, "HEIGHT", *arguments);
   app->add_option("--output,-o", arguments->output, "OBJ to write; its MTL stands beside it")->required();
   app->add_option("--index", arguments->index, "Index of refraction (Ni of the material; default 1.5)")
       ->check(in_range(1.0, 10.0));
+  app->add_flag("--close", arguments->close,
+                "Of a periodic relief: with the cells that close it, so that copies fit (for bsdf --periodic)");
   return {app, [arguments](const CommandContext& context) {
             if (ending_of(arguments->output) != ".obj")
               throw InvalidInput(arguments->output + ": meshes are written as .obj");
-            const TriangleMesh mesh = to_mesh(arguments->read().field);
+            const HeightField field = arguments->read().field;
+            const TriangleMesh mesh = arguments->close ? to_closed_mesh(field) : to_mesh(field);
             write_obj(mesh, {.index_of_refraction = arguments->index}, arguments->output);
             Json json = written(arguments->output);
             json["vertices"] = mesh.vertices_um.size();

@@ -22,11 +22,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* prefix = "mezzotint:";
-constexpr const char* provenance_prefix = "mezzotint:provenance.";
+// Of all names but those that three channels share.
+constexpr const char* shared_prefix = "mezzotint:";
 constexpr std::size_t longest_key = 200;  // OpenEXR's names have 255 characters at most
 
 std::string order_name(std::size_t order) { return "reflection.order_" + std::to_string(order + 1); }
+
+// What names of a channel's maps end in, and what those of its attributes begin with.
+std::string ending_of(const std::string& channel) { return channel.empty() ? "" : "." + channel; }
+std::string prefix_of(const std::string& channel) {
+  return channel.empty() ? shared_prefix : shared_prefix + channel + ".";
+}
+std::string provenance_prefix(const std::string& channel) { return prefix_of(channel) + "provenance."; }
 
 bool has_intervals(const Bsdf& bsdf) { return !bsdf.reflection.low_95.empty(); }
 
@@ -56,9 +63,9 @@ auto channels_of(B& bsdf) {
 }
 
 template <class Audit>  // EnergyAudit or const EnergyAudit
-auto shares_of(Audit& energy) {
-  const auto entry = [](const char* name, auto& share) {
-    return std::pair<std::string, decltype(&share)>(std::string(prefix) + "energy." + name, &share);
+auto shares_of(Audit& energy, const std::string& channel) {
+  const auto entry = [&](const char* name, auto& share) {
+    return std::pair<std::string, decltype(&share)>(prefix_of(channel) + "energy." + name, &share);
   };
   return std::array{entry("reflected", energy.reflected), entry("transmitted", energy.transmitted),
                     entry("absorbed", energy.absorbed), entry("left_sideways", energy.left_sideways),
@@ -81,86 +88,50 @@ void set_number(OIIO::ImageSpec& spec, const std::string& name, double value) {
   spec.attribute(name, OIIO::TypeDesc::DOUBLE, &value);
 }
 
-OIIO::ImageSpec spec_of(const Bsdf& bsdf) {
-  OIIO::ImageSpec spec(static_cast<int>(bsdf.grid.width), static_cast<int>(bsdf.grid.height), 0, OIIO::TypeDesc::FLOAT);
-  for (const auto& [name, map] : channels_of(bsdf)) spec.channelnames.push_back(name);
-  spec.nchannels = static_cast<int>(spec.channelnames.size());
-  spec.attribute("compression", "zip");
-  spec.attribute("DateTime", "");  // otherwise the time of writing: the same result shall give the same bytes
-  spec.attribute(std::string(prefix) + "first_line", "y = -1");
-  set_number(spec, std::string(prefix) + "incidence_theta_deg", bsdf.incidence.theta.degrees());
-  set_number(spec, std::string(prefix) + "incidence_phi_deg", bsdf.incidence.phi.degrees());
-  for (const auto& [name, share] : shares_of(bsdf.energy)) {
+void set_attributes(const Bsdf& bsdf, const std::string& channel, OIIO::ImageSpec& spec) {
+  for (const auto& [name, share] : shares_of(bsdf.energy, channel)) {
     set_number(spec, name, share->value);
     set_number(spec, name + ".standard_error", share->standard_error);
   }
   for (const auto& [key, value] : bsdf.provenance) {
-    if (!value.empty()) spec.attribute(provenance_prefix + key, value);  // OpenImageIO's reader drops empty text
+    if (!value.empty())
+      spec.attribute(provenance_prefix(channel) + key, value);  // OpenImageIO's reader drops empty text
   }
+}
+
+OIIO::ImageSpec spec_of(std::span<const Bsdf> channels) {
+  const Bsdf& first = channels.front();
+  OIIO::ImageSpec spec(static_cast<int>(first.grid.width), static_cast<int>(first.grid.height), 0,
+                       OIIO::TypeDesc::FLOAT);
+  spec.attribute("compression", "zip");
+  spec.attribute("DateTime", "");  // otherwise the time of writing: the same result shall give the same bytes
+  spec.attribute(std::string(shared_prefix) + "first_line", "y = -1");
+  set_number(spec, std::string(shared_prefix) + "incidence_theta_deg", first.incidence.theta.degrees());
+  set_number(spec, std::string(shared_prefix) + "incidence_phi_deg", first.incidence.phi.degrees());
+  if (channels.size() > 1) spec.attribute(std::string(shared_prefix) + "channels", "R, G, B");
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const std::string channel = channel_name(c, channels.size());
+    for (const auto& [name, map] : channels_of(channels[c])) spec.channelnames.push_back(name + ending_of(channel));
+    set_attributes(channels[c], channel, spec);
+  }
+  spec.nchannels = static_cast<int>(spec.channelnames.size());
   return spec;
 }
 
-std::vector<float> interleaved(const Bsdf& bsdf) {
-  const auto channels = channels_of(bsdf);
-  std::vector<float> pixels(bsdf.grid.size() * channels.size());
-  for (std::size_t c = 0; c < channels.size(); ++c) {
-    const DirectionMap& map = *channels[c].second;
-    for (std::size_t k = 0; k < map.size(); ++k) pixels[k * channels.size() + c] = static_cast<float>(map[k]);
-  }
+std::vector<float> interleaved(std::span<const Bsdf> channels) {
+  std::vector<const DirectionMap*> maps;
+  for (const Bsdf& bsdf : channels)
+    for (const auto& [name, map] : channels_of(bsdf)) maps.push_back(map);
+  std::vector<float> pixels(channels.front().grid.size() * maps.size());
+  for (std::size_t c = 0; c < maps.size(); ++c)
+    for (std::size_t k = 0; k < maps[c]->size(); ++k) pixels[k * maps.size() + c] = static_cast<float>((*maps[c])[k]);
   return pixels;
 }
 
-double number_at(const OIIO::ImageSpec& spec, const std::string& name, const fs::path& path) {
-  const OIIO::ParamValue* value = spec.find_attribute(name, OIIO::TypeDesc::DOUBLE);
-  if (value == nullptr)
-    throw FileError(path, "header", "lacks the number \"" + name + "\"; is it a BSDF of Mezzotint?");
-  return value->get<double>();
-}
-
-void read_attributes(const OIIO::ImageSpec& spec, const fs::path& path, Bsdf& bsdf) {
-  bsdf.incidence.theta = Angle::from_degrees(number_at(spec, std::string(prefix) + "incidence_theta_deg", path));
-  bsdf.incidence.phi = Angle::from_degrees(number_at(spec, std::string(prefix) + "incidence_phi_deg", path));
-  for (const auto& [name, share] : shares_of(bsdf.energy)) {
-    *share = {number_at(spec, name, path), number_at(spec, name + ".standard_error", path)};
-  }
-  const std::string_view marker = provenance_prefix;
-  for (const OIIO::ParamValue& value : spec.extra_attribs) {
-    const std::string name = value.name().string();
-    if (name.starts_with(marker)) bsdf.provenance[name.substr(marker.size())] = value.get_string(0);
-  }
-}
-
-// So many maps by order of interaction does the file hold.
-std::size_t order_count(const OIIO::ImageSpec& spec) {
-  std::size_t count = 0;
-  const auto& names = spec.channelnames;
-  while (count < 64 && std::find(names.begin(), names.end(), order_name(count)) != names.end()) ++count;
-  return count;
-}
-
-// So that the list of channels names the intervals, where the file holds them.
-void expect_intervals(const OIIO::ImageSpec& spec, Bsdf& bsdf) {
-  const auto& names = spec.channelnames;
-  if (std::find(names.begin(), names.end(), "reflection.low_95") != names.end()) bsdf.reflection.low_95.resize(1);
-}
-
-void read_channels(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, const fs::path& path, Bsdf& bsdf) {
-  const auto stride = static_cast<std::size_t>(spec.nchannels);
-  for (const auto& [name, map] : channels_of(bsdf)) {
-    const auto found = std::find(spec.channelnames.begin(), spec.channelnames.end(), name);
-    if (found == spec.channelnames.end()) throw FileError(path, "header", "lacks the channel \"" + name + "\"");
-    const auto channel = static_cast<std::size_t>(found - spec.channelnames.begin());
-    map->resize(bsdf.grid.size());
-    for (std::size_t k = 0; k < map->size(); ++k) (*map)[k] = double{pixels[k * stride + channel]};
-  }
-}
-
-}  // namespace
-
-void write_exr(const Bsdf& bsdf, const fs::path& path) {
-  require_writable(bsdf);
-  const OIIO::ImageSpec spec = spec_of(bsdf);
-  const std::vector<float> pixels = interleaved(bsdf);
+void write_all(std::span<const Bsdf> channels, const fs::path& path) {
+  for (const Bsdf& bsdf : channels) require_writable(bsdf);
+  const OIIO::ImageSpec spec = spec_of(channels);
+  const std::vector<float> pixels = interleaved(channels);
   write_aside(path, [&](const fs::path& temporary) {
     // By the format's name: the ending of the path is the caller's affair.
     const std::unique_ptr<OIIO::ImageOutput> file = OIIO::ImageOutput::create("exr");
@@ -172,19 +143,99 @@ void write_exr(const Bsdf& bsdf, const fs::path& path) {
   });
 }
 
-Bsdf read_exr(const fs::path& path) {
+double number_at(const OIIO::ImageSpec& spec, const std::string& name, const fs::path& path) {
+  const OIIO::ParamValue* value = spec.find_attribute(name, OIIO::TypeDesc::DOUBLE);
+  if (value == nullptr)
+    throw FileError(path, "header", "lacks the number \"" + name + "\"; is it a BSDF of Mezzotint?");
+  return value->get<double>();
+}
+
+void read_attributes(const OIIO::ImageSpec& spec, const std::string& channel, const fs::path& path, Bsdf& bsdf) {
+  bsdf.incidence.theta = Angle::from_degrees(number_at(spec, std::string(shared_prefix) + "incidence_theta_deg", path));
+  bsdf.incidence.phi = Angle::from_degrees(number_at(spec, std::string(shared_prefix) + "incidence_phi_deg", path));
+  for (const auto& [name, share] : shares_of(bsdf.energy, channel)) {
+    *share = {number_at(spec, name, path), number_at(spec, name + ".standard_error", path)};
+  }
+  const std::string marker = provenance_prefix(channel);
+  for (const OIIO::ParamValue& value : spec.extra_attribs) {
+    const std::string name = value.name().string();
+    if (name.starts_with(marker)) bsdf.provenance[name.substr(marker.size())] = value.get_string(0);
+  }
+}
+
+// So many maps by order of interaction does the file hold.
+std::size_t order_count(const OIIO::ImageSpec& spec, const std::string& channel) {
+  std::size_t count = 0;
+  const auto& names = spec.channelnames;
+  while (count < 64 && std::find(names.begin(), names.end(), order_name(count) + ending_of(channel)) != names.end())
+    ++count;
+  return count;
+}
+
+// So that the list of channels names the intervals, where the file holds them.
+void expect_intervals(const OIIO::ImageSpec& spec, const std::string& channel, Bsdf& bsdf) {
+  const auto& names = spec.channelnames;
+  if (std::find(names.begin(), names.end(), "reflection.low_95" + ending_of(channel)) != names.end())
+    bsdf.reflection.low_95.resize(1);
+}
+
+void read_maps(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, const std::string& of_channel,
+               const fs::path& path, Bsdf& bsdf) {
+  const auto stride = static_cast<std::size_t>(spec.nchannels);
+  for (const auto& [plain_name, map] : channels_of(bsdf)) {
+    const std::string name = plain_name + ending_of(of_channel);
+    const auto found = std::find(spec.channelnames.begin(), spec.channelnames.end(), name);
+    if (found == spec.channelnames.end()) throw FileError(path, "header", "lacks the channel \"" + name + "\"");
+    const auto channel = static_cast<std::size_t>(found - spec.channelnames.begin());
+    map->resize(bsdf.grid.size());
+    for (std::size_t k = 0; k < map->size(); ++k) (*map)[k] = double{pixels[k * stride + channel]};
+  }
+}
+
+}  // namespace
+
+std::string channel_name(std::size_t channel, std::size_t channels) {
+  constexpr std::array names = {"R", "G", "B"};
+  return channels == 1 ? "" : names.at(channel);
+}
+
+void write_exr(const Bsdf& bsdf, const fs::path& path) { write_all({&bsdf, 1}, path); }
+
+void write_channels_exr(std::span<const Bsdf> channels, const fs::path& path) {
+  require(channels.size() == 3, "a file of several channels has three, R, G and B");
+  for (const Bsdf& bsdf : channels) {
+    require(bsdf.grid == channels[0].grid && bsdf.reflection_orders.size() == channels[0].reflection_orders.size() &&
+                bsdf.incidence.theta.radians() == channels[0].incidence.theta.radians() &&
+                bsdf.incidence.phi.radians() == channels[0].incidence.phi.radians(),
+            "the channels of one file have one grid, one direction of the light and the same orders");
+  }
+  write_all(channels, path);
+}
+
+std::vector<Bsdf> read_channels_exr(const fs::path& path) {
   const auto [bytes, memory, file, spec] = open_exr(path);
-  Bsdf bsdf;
-  bsdf.grid = {static_cast<std::size_t>(spec.width), static_cast<std::size_t>(spec.height)};
-  read_attributes(spec, path, bsdf);
-  bsdf.reflection_orders.resize(order_count(spec));
-  expect_intervals(spec, bsdf);
-  std::vector<float> pixels(bsdf.grid.size() * static_cast<std::size_t>(spec.nchannels));
+  const bool coloured = spec.find_attribute(std::string(shared_prefix) + "channels") != nullptr;
+  std::vector<Bsdf> channels(coloured ? 3 : 1);
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const std::string channel = channel_name(c, channels.size());
+    channels[c].grid = {static_cast<std::size_t>(spec.width), static_cast<std::size_t>(spec.height)};
+    read_attributes(spec, channel, path, channels[c]);
+    channels[c].reflection_orders.resize(order_count(spec, channel));
+    expect_intervals(spec, channel, channels[c]);
+  }
+  std::vector<float> pixels(channels[0].grid.size() * static_cast<std::size_t>(spec.nchannels));
   if (!file->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data())) {
     throw FileError(path, "pixels", "cannot be read whole; the file is truncated or damaged: " + file->geterror());
   }
-  read_channels(spec, pixels, path, bsdf);
-  return bsdf;
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    read_maps(spec, pixels, channel_name(c, channels.size()), path, channels[c]);
+  return channels;
+}
+
+Bsdf read_exr(const fs::path& path) {
+  std::vector<Bsdf> channels = read_channels_exr(path);
+  if (channels.size() != 1) throw FileError(path, "header", "holds three channels, R, G and B; one is wanted here");
+  return std::move(channels.front());
 }
 
 }  // namespace mezzotint

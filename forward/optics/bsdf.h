@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -51,5 +52,18 @@ void write_exr(const Bsdf& bsdf, const std::filesystem::path& path);
 /// @throws FileError for a file that is no such EXR, is truncated, or larger than 4096 bins a side; its
 ///         header is looked at before memory is taken for it.
 [[nodiscard]] Bsdf read_exr(const std::filesystem::path& path);
+
+/// Three channels, R, G and B, of one surface under one light, in one file; one channel is written by `write_exr`.
+/// Names of channels end in ".R", ".G", ".B", so that a viewer shows the layer "reflection" in colour; attributes read
+/// "mezzotint:R.…".
+/// @throws InvalidInput as `write_exr`, and where they have not the same grid, incidence and orders, or are not three.
+void write_channels_exr(std::span<const Bsdf> channels, const std::filesystem::path& path);
+
+/// The channels of a file: three, or the one of `write_exr`. `read_exr` refuses a file of three.
+/// @throws FileError as `read_exr`.
+[[nodiscard]] std::vector<Bsdf> read_channels_exr(const std::filesystem::path& path);
+
+/// "R", "G", "B"; of one channel an empty name.
+[[nodiscard]] std::string channel_name(std::size_t channel, std::size_t channels);
 
 }  // namespace mezzotint

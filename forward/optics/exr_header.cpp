@@ -81,8 +81,9 @@ void require_lossless(HeaderReader& header, Bytes value) {
 void require_channels(HeaderReader& header, Bytes value, const std::filesystem::path& path) {
   constexpr std::uint32_t float_type = 2;
   HeaderReader list(value, path);
+  constexpr std::size_t most = 432;  // three times the maps, their errors, and 64 orders with theirs
   for (std::size_t count = 0; !list.take_name().empty(); ++count) {
-    if (count == 64) header.fail("has more than 64 channels; a BSDF has 8");
+    if (count == most) header.fail("has more than 432 channels; no BSDF has so many");
     if (list.take_word() != float_type) header.fail("has channels that are not 32-bit float");
     list.take_word();  // linear or not, and three bytes without meaning
     if (list.take_word() != 1 || list.take_word() != 1) header.fail("has channels that leave out samples");

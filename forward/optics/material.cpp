@@ -1,5 +1,6 @@
 #include "forward/optics/material.h"
 
+#include <algorithm>
 #include <charconv>
 #include <optional>
 
@@ -57,6 +58,23 @@ Material parse_material(std::string_view text) {
   const std::optional<Material> material = understood(text);
   require(material.has_value(), fmt::format("material \"{}\" is not understood; write {}", text, forms));
   return *material;
+}
+
+std::vector<Material> parse_materials(std::string_view text) {
+  const std::size_t colon = std::min(text.find(':'), text.size() - 1);
+  const std::string kind(text.substr(0, text.empty() ? 0 : colon + 1));
+  std::vector<Material> materials;
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::size_t slash = rest.find('/');
+    const std::string_view part = rest.substr(0, slash);
+    materials.push_back(parse_material(materials.empty() ? std::string(part) : kind + std::string(part)));
+    rest = slash == std::string_view::npos ? std::string_view() : rest.substr(slash + 1);
+    require(slash == std::string_view::npos || !rest.empty(), fmt::format("material \"{}\" ends in \"/\"", text));
+  }
+  require(materials.size() == 1 || materials.size() == 3,
+          fmt::format("material \"{}\" has {} indices; write one for all light, or three for R, G, B", text,
+                      materials.size()));
+  return materials;
 }
 
 std::string to_string(const Material& material) {

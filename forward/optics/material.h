@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 namespace mezzotint {
 
@@ -27,6 +28,11 @@ using Material = std::variant<Mirror, Dielectric, Conductor>;
 ///         and in (0, 20] for a conductor, κ in (0, 50], the absorption in [0, 1000].
 [[nodiscard]] Material parse_material(std::string_view text);
 [[nodiscard]] std::string to_string(const Material& material);
+
+/// One material for all light, or three of one kind for the channels R, G, B: the indices are written one after the
+/// other, "dielectric:1.51/1.52/1.53", "conductor:0.2,3.9/0.9,2.4/1.1,1.9".
+/// @throws InvalidInput as parse_material, and for two or more than three.
+[[nodiscard]] std::vector<Material> parse_materials(std::string_view text);
 
 /// Unpolarised Fresnel reflectance seen from air, cos_incident in [0, 1].
 [[nodiscard]] double reflectance(const Material& material, double cos_incident);

@@ -5,6 +5,29 @@
 
 namespace mezzotint {
 
+void BatchTally::leave_all(Fate fate, std::span<const std::uint32_t> which, const std::vector<std::uint32_t>& bins,
+                           const std::vector<float>& weights, std::uint32_t order) {
+  const std::size_t side = fate == Fate::Reflected ? 0 : 1;
+  DirectionMap& map = side == 0 ? reflected : transmitted;
+  double sum = 0.0, absolute = 0.0;  // in registers
+  for (const std::uint32_t k : which) {
+    const double weight = double{weights[k]};
+    map[bins[k]] += weight;
+    sum += weight;
+    const double size = std::abs(weight);
+    absolute += size;
+    squares[side][bins[k]] += weight * weight;
+    if (weight < 0.0) negative[side][bins[k]] += size;
+    if (size > largest_weight[side]) largest_weight[side] = size;
+  }
+  arrivals[side] += static_cast<double>(which.size());
+  arrived_weight[side] += absolute;
+  add(fate, sum);
+  if (side != 0 || orders.empty()) return;
+  DirectionMap& of_order = orders[std::min<std::size_t>(order, orders.size()) - 1];
+  for (const std::uint32_t k : which) of_order[bins[k]] += double{weights[k]};
+}
+
 void BatchTally::close_slice() {
   for (std::size_t k = 0; k < fate_count; ++k) total_energy[k] += energy[k];
   energy = {};

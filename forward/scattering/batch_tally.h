@@ -40,6 +40,9 @@ struct BatchTally {
     if (size > largest_weight[map]) largest_weight[map] = size;
     add(fate, weight);
   }
+  /// The same for the paths `which` of many.
+  void leave_all(Fate fate, std::span<const std::uint32_t> which, const std::vector<std::uint32_t>& bins,
+                 const std::vector<float>& weights, std::uint32_t order);
   /// Keeps the reflection apart by order of interaction: maps for 1, 2, …, and the last for that order and above.
   void keep_orders(std::uint32_t maps) { orders.assign(maps, DirectionMap(reflected.size())); }
   /// Moves the energies since the last call to the total: sums of sums stay exact to 1e-15 over 2^36 paths.

@@ -1,9 +1,11 @@
 #include "forward/scattering/incident_light.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "forward/base/error.h"
+#include "forward/scattering/beam_rays.h"
 
 namespace mezzotint {
 
@@ -13,28 +15,12 @@ namespace {
 constexpr double start_clearance = 1e-2;
 constexpr std::size_t slice = 256;
 
-// Rounds down; the baseline of x86-64 has no instruction for it, and a call a coordinate is a tenth of all tracing.
-std::int64_t floor_of(double x) {
-  const auto whole = static_cast<std::int64_t>(x);
-  return whole - (x < static_cast<double>(whole) ? 1 : 0);
-}
-
-std::int32_t wrap(std::int64_t cell, std::int64_t count) {
-  if (cell >= 0 && cell < count) return static_cast<std::int32_t>(cell);
-  const std::int64_t rest = cell % count;
-  return static_cast<std::int32_t>(rest < 0 ? rest + count : rest);
-}
-
 }  // namespace
 
-IncidentLight::IncidentLight(const PeriodicTile& tile, const PathTracingOptions& options, const BeamFront* front)
-    : tile_(tile),
+IncidentLight::IncidentLight(const SceneFrame& frame, const PathTracingOptions& options, const BeamFront* front)
+    : frame_(frame),
       front_(front),
       to_light_(to_direction(options.incidence)),
-      columns_(tile.columns()),
-      rows_(tile.rows()),
-      aimed_columns_(tile.original_length_x()),
-      aimed_rows_(tile.original_length_y() / tile.cell_y()),
       directions_(options.seed, RandomPurpose::IncidentDirection) {
   if (!options.spread_incidence_over_bin) return;
   const std::size_t bin = options.grid.bin_of(to_light_.x(), to_light_.y());
@@ -57,55 +43,41 @@ Direction IncidentLight::direction_in_pixel(std::uint64_t index) const {
   }
 }
 
-float IncidentLight::start_height(double aim_x, double aim_y) const {
-  if (front_ == nullptr || pixel_) return static_cast<float>(tile_.highest() + start_clearance);
-  return front_->height(static_cast<std::int32_t>(aim_x), static_cast<std::int32_t>(aim_y));
-}
-
 void IncidentLight::fill(const SampleStrata& strata, std::uint64_t first, std::uint64_t first_index, std::size_t count,
                          AimedRays& aimed) const {
-  RayBatch& rays = aimed.rays;
-  std::array<double, slice> u{}, v{};
-  Direction light = to_light_;
-  double shift_x = light.x() / light.z(), shift_y = light.y() / (light.z() * tile_.cell_y());
   for (std::size_t begin = 0; begin < count; begin += slice) {
     const std::size_t here = std::min(slice, count - begin);
-    strata.points(first + begin, std::span(u).first(here), std::span(v).first(here));
+    const auto x = std::span(aimed.aim_x).subspan(begin, here), y = std::span(aimed.aim_y).subspan(begin, here);
+    strata.points(first + begin, x, y);
     for (std::size_t k = 0; k < here; ++k) {
-      const std::size_t at = begin + k;
-      if (pixel_) {
-        light = direction_in_pixel(first_index + at);
-        shift_x = light.x() / light.z();
-        shift_y = light.y() / (light.z() * tile_.cell_y());
-      }
-      const double aim_x = u[k] * aimed_columns_, aim_y = v[k] * aimed_rows_;
-      aimed.aim_x[at] = aim_x;
-      aimed.aim_y[at] = aim_y;
-      const float z = start_height(aim_x, aim_y);
-      const double rise = double{z} - tile_.mean();
-      const double x = aim_x + rise * shift_x, y = aim_y + rise * shift_y;
-      const std::int64_t cell_x = floor_of(x), cell_y = floor_of(y);
-      rays.x[at] = static_cast<float>(x - static_cast<double>(cell_x));
-      rays.y[at] = static_cast<float>(y - static_cast<double>(cell_y));
-      rays.z[at] = z;
-      rays.cell_x[at] = wrap(cell_x, columns_);
-      rays.cell_y[at] = wrap(cell_y, rows_);
-      rays.dx[at] = static_cast<float>(-light.x());
-      rays.dy[at] = static_cast<float>(-light.y());
-      rays.dz[at] = static_cast<float>(-light.z());
-      rays.side[at] = Side::Outside;
-      rays.left[at] = no_half;
+      x[k] = frame_.aimed_x + x[k] * frame_.aimed_columns;
+      y[k] = frame_.aimed_y + y[k] * frame_.aimed_rows;
+    }
+    Beam beam{to_light_, frame_.mean, pixel_ ? nullptr : front_, static_cast<float>(frame_.highest + start_clearance)};
+    if (!pixel_) {
+      aim_beam(frame_, beam, x, y, begin, aimed);
+      continue;
+    }
+    for (std::size_t k = 0; k < here; ++k) {
+      beam.to_light = direction_in_pixel(first_index + begin + k);
+      aim_beam(frame_, beam, x.subspan(k, 1), y.subspan(k, 1), begin + k, aimed);
     }
   }
 }
 
+bool IncidentLight::missed(const AimedRays& rays, const HitBatch& hits, std::size_t k) const {
+  const RayEnd end = hits.end[k];
+  if (frame_.ends == SceneEnds::Open) return end == RayEnd::Sideways || end == RayEnd::Below;
+  return frame_.ends == SceneEnds::Mirrored && end == RayEnd::Surface && met_a_copy(rays, hits, k);
+}
+
+// Told by the way that its ray went.
 bool IncidentLight::met_a_copy(const AimedRays& rays, const HitBatch& hits, std::size_t k) const {
-  if (!tile_.mirrored()) return false;
   // Where the ray is at the height of the hit, in as many tiles as it took.
-  const double fall = (double{hits.z[k]} - tile_.mean()) / double{rays.rays.dz[k]};
+  const double fall = (double{hits.z[k]} - frame_.mean) / double{rays.rays.dz[k]};
   const double x = rays.aim_x[k] + fall * double{rays.rays.dx[k]};
-  const double y = rays.aim_y[k] + fall * double{rays.rays.dy[k]} / tile_.cell_y();
-  return x < 0.0 || y < 0.0 || x > aimed_columns_ || y > aimed_rows_;
+  const double y = rays.aim_y[k] + fall * double{rays.rays.dy[k]} / frame_.cell_y;
+  return x < 0.0 || y < 0.0 || x > frame_.aimed_columns || y > frame_.aimed_rows;
 }
 
 }  // namespace mezzotint

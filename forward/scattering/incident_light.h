@@ -8,8 +8,8 @@
 #include "forward/scattering/path_tracing.h"
 #include "forward/scattering/sample_strata.h"
 #include "forward/tracing/beam_front.h"
-#include "forward/tracing/periodic_tile.h"
 #include "forward/tracing/ray_batch.h"
+#include "forward/tracing/scene_frame.h"
 
 namespace mezzotint {
 
@@ -26,14 +26,14 @@ class IncidentLight {
 public:
   /// @param front  where the rays of one parallel beam may start; nullptr: above the highest point.
   /// @throws InvalidInput where the bin over which light is to be spread hardly meets the disc.
-  IncidentLight(const PeriodicTile& tile, const PathTracingOptions& options, const BeamFront* front);
+  IncidentLight(const SceneFrame& frame, const PathTracingOptions& options, const BeamFront* front);
 
   /// The rays of strata first … first + count − 1 into `rays`; `first_index` is the number of the first among all
   /// rays of the run (for light that is spread over a bin).
   void fill(const SampleStrata& strata, std::uint64_t first, std::uint64_t first_index, std::size_t count,
             AimedRays& rays) const;
-  /// Whether a first hit lies in a mirrored copy: told by the way that its ray went.
-  [[nodiscard]] bool met_a_copy(const AimedRays& rays, const HitBatch& hits, std::size_t k) const;
+  /// Whether a first ray missed what was measured: met a mirrored copy, or went past an open patch.
+  [[nodiscard]] bool missed(const AimedRays& rays, const HitBatch& hits, std::size_t k) const;
   [[nodiscard]] const Direction& to_light() const { return to_light_; }
 
 private:
@@ -41,13 +41,11 @@ private:
     double left, bottom, width, height;
   };
   [[nodiscard]] Direction direction_in_pixel(std::uint64_t index) const;
-  [[nodiscard]] float start_height(double aim_x, double aim_y) const;
+  [[nodiscard]] bool met_a_copy(const AimedRays& rays, const HitBatch& hits, std::size_t k) const;
 
-  const PeriodicTile& tile_;
+  SceneFrame frame_;
   const BeamFront* front_;
   Direction to_light_;
-  std::int64_t columns_, rows_;        ///< of the tile
-  double aimed_columns_, aimed_rows_;  ///< of its measured part
   std::optional<Pixel> pixel_;
   RandomStream directions_;
 };

@@ -36,8 +36,9 @@ struct InteractionBatch {
 /// About the triangles' normals: single precision, many at a time.
 void interact_geometric(const Material& material, const DirectionGrid& grid, const RayBatch& rays, const HitBatch& hits,
                         std::size_t count, InteractionBatch& result);
-/// About either kind of normal, in double precision, one after the other.
-void interact_one_by_one(const PeriodicTile& tile, const Material& material, const DirectionGrid& grid,
+/// About either kind of normal, in double precision, one after the other. Hits of a mesh have no `tile`, and only
+/// geometric normals.
+void interact_one_by_one(const PeriodicTile* tile, const Material& material, const DirectionGrid& grid,
                          NormalKind normals, const RayBatch& rays, const HitBatch& hits, std::size_t count,
                          InteractionBatch& result);
 

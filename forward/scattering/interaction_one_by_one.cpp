@@ -68,22 +68,23 @@ void store(const SurfaceInteraction& one, const DirectionGrid& grid, std::size_t
 
 }  // namespace
 
-void interact_one_by_one(const PeriodicTile& tile, const Material& material, const DirectionGrid& grid,
+void interact_one_by_one(const PeriodicTile* tile, const Material& material, const DirectionGrid& grid,
                          NormalKind normals, const RayBatch& rays, const HitBatch& hits, std::size_t count,
                          InteractionBatch& result) {
   for (std::size_t k = 0; k < count; ++k) {
     if (hits.end[k] != RayEnd::Surface) continue;
     const Direction way = Direction(rays.dx[k], rays.dy[k], rays.dz[k]).normalized();
     const double sign = rays.side[k] == Side::Outside ? 1.0 : -1.0;
-    const Direction facet = sign * Direction(-hits.slope_x[k], -hits.slope_y[k], 1.0).normalized();
+    const double rise = hits.rise.empty() ? 1.0 : double{hits.rise[k]};
+    const Direction facet = sign * Direction(-hits.slope_x[k], -hits.slope_y[k], rise).normalized();
     if (normals == NormalKind::Geometric) {
       store(scatter(material, way, rays.side[k], facet), grid, k, result);
       continue;
     }
     const auto cell =
-        static_cast<std::uint32_t>(hits.cell_y[k]) * tile.columns() + static_cast<std::uint32_t>(hits.cell_x[k]);
+        static_cast<std::uint32_t>(hits.cell_y[k]) * tile->columns() + static_cast<std::uint32_t>(hits.cell_x[k]);
     const auto [u, v] = weights(hits.triangle[k], double{hits.x[k]}, double{hits.y[k]});
-    const Direction smooth = sign * tile.interpolated_normal(2 * cell + hits.triangle[k], u, v);
+    const Direction smooth = sign * tile->interpolated_normal(2 * cell + hits.triangle[k], u, v);
     const SurfaceInteraction about_smooth = scatter(material, way, rays.side[k], smooth);
     const bool good = usable(about_smooth, way, smooth, facet);
     if (!good) ++result.normal_fallbacks;

@@ -19,6 +19,7 @@
 #include "forward/scattering/batch_tally.h"
 #include "forward/scattering/incident_light.h"
 #include "forward/scattering/path_walk.h"
+#include "forward/scattering/scene_tracing.h"
 #include "forward/scattering/trace_result.h"
 #include "forward/scattering/trace_state.h"
 #include "forward/scattering/trace_warnings.h"
@@ -41,8 +42,10 @@ constexpr std::uint32_t splat_groups = 16;
 // mirrors), and the correction that makes the audit sum to 1 would divide by next to nothing.
 constexpr double least_splat_share = 0.1;
 
+}  // namespace
+
 void require_valid(const PathTracingOptions& options) {
-  mezzotint::require_valid(options.grid);
+  require_valid(options.grid);
   const double theta = options.incidence.theta.radians();
   require(theta >= 0.0 && theta < 0.5 * std::numbers::pi && std::isfinite(options.incidence.phi.radians()),
           "the light must come from above: theta from 0 up to, but not including, 90°");
@@ -59,6 +62,8 @@ void require_valid(const PathTracingOptions& options) {
     require(dielectric->absorption_per_um >= 0.0, "an absorption cannot be negative");
   }
 }
+
+namespace {
 
 std::uint32_t bits_for(std::uint64_t paths, std::uint32_t batches) {
   const std::uint64_t least = std::max<std::uint64_t>(1, (paths + batches - 1) / batches);
@@ -159,7 +164,7 @@ BatchTally empty_tally(const PathTracingOptions& options) {
 }
 
 BatchTally splat_all(const PeriodicTile& tile, const ReliefTracer& tracer, const PathTracingOptions& options) {
-  const PathWalker walker(tile, tracer, options);
+  const PathWalker walker(tile.frame(), &tile, tracer, options);
   std::vector<BatchTally> groups(splat_groups, empty_tally(options));
   tbb::parallel_for(std::uint32_t{0}, splat_groups, [&](std::uint32_t group) {
     WalkSpace space;
@@ -192,18 +197,18 @@ namespace {
 /// One call of trace: passes until the budget or the tolerance is met.
 class Run {
 public:
-  Run(const PeriodicTile& tile, const ReliefTracer& tracer, const HeightFieldTracer* fast, const BatchTally* splat,
-      const PathTracingOptions& options, const Progress& progress)
-      : tile_(tile),
+  Run(const SceneFrame& frame, const PeriodicTile* tile, const ReliefTracer& tracer, const HeightFieldTracer* fast,
+      const BatchTally* splat, const PathTracingOptions& options, const Progress& progress)
+      : frame_(frame),
         options_(options),
         progress_(progress),
-        walker_(tile, tracer, options),
+        walker_(frame, tile, tracer, options),
         splat_(splat),
         start_(std::chrono::steady_clock::now()) {
     if (splat == nullptr && fast != nullptr && !options.spread_incidence_over_bin) {
-      front_.emplace(fast->pyramid(), -to_direction(options.incidence), tile.mean());
+      front_.emplace(fast->pyramid(), -to_direction(options.incidence), frame.mean);
     }
-    light_.emplace(tile, options, front_ ? &*front_ : nullptr);
+    light_.emplace(frame, options, front_ ? &*front_ : nullptr);
     state_.tallies.assign(options.batches, empty_tally(options));
   }
 
@@ -237,7 +242,7 @@ private:
     return options_.seconds > 0.0 && seconds() >= options_.seconds;
   }
   [[nodiscard]] TraceResult result() const {
-    return summarise(options_, state_, splat_, 2.0 * tile_.columns() * tile_.rows());
+    return summarise(options_, state_, splat_, 2.0 * frame_.columns * frame_.rows);
   }
   [[nodiscard]] double error() const { return relative_error(options_.grid, result().bsdf.reflection); }
 
@@ -287,7 +292,7 @@ private:
     report(progress_, "trace", fraction, note);
   }
 
-  const PeriodicTile& tile_;
+  SceneFrame frame_;
   const PathTracingOptions& options_;
   const Progress& progress_;
   std::optional<BeamFront> front_;
@@ -314,6 +319,13 @@ std::string run_digest(const std::string& relief, const PathTracingOptions& opti
 }
 
 }  // namespace
+
+Bsdf trace_scene(const SceneFrame& frame, const ReliefTracer& tracer, const std::string& digest,
+                 const PathTracingOptions& options, const Progress& progress) {
+  Run run(frame, nullptr, tracer, nullptr, nullptr, options, progress);
+  if (!options.state.empty()) run.resume(run_digest(digest, options, false));
+  return run.go().bsdf;
+}
 
 double relative_error(const DirectionGrid& grid, const MapEstimate& map) {
   const auto areas = projected_solid_angles(grid);
@@ -344,7 +356,7 @@ Bsdf PathTracer::trace(const PathTracingOptions& options, const Progress& progre
   const bool height_field = options.tracer == TracerKind::HeightField;
   if (!height_field && !scene_->triangles) report(progress, "trace", 0.0, "building the tree of triangles");
   const HeightFieldTracer* fast = height_field ? &scene_->height_field() : nullptr;
-  Run run(scene_->tile, scene_->tracer(options.tracer), fast, splat, options, progress);
+  Run run(scene_->tile.frame(), &scene_->tile, scene_->tracer(options.tracer), fast, splat, options, progress);
   if (!options.state.empty()) run.resume(run_digest(scene_->digest(), options, splat != nullptr));
   Bsdf bsdf = run.go().bsdf;
   add_warnings(bsdf, scene_->warnings);

@@ -17,8 +17,6 @@ void leak(double weight, BatchTally& tally) {
 
 enum class Branch { Reflected, Refracted };
 
-bool is_exit(RayEnd end, Side side) { return end == (side == Side::Outside ? RayEnd::Above : RayEnd::Below); }
-
 // Light from a facet into the open, whatever stands in its way: the splat.
 void leave_unhindered(Branch branch, float way_z, std::uint32_t bin, double weight, BatchTally& tally) {
   const bool up = branch == Branch::Reflected;
@@ -58,19 +56,21 @@ float departure_cosine(const HitBatch& hits, const RayBatch& rays, std::size_t k
 
 }  // namespace
 
-PathWalker::PathWalker(const PeriodicTile& tile, const ReliefTracer& tracer, const PathTracingOptions& options)
-    : tile_(tile),
+PathWalker::PathWalker(const SceneFrame& frame, const PeriodicTile* relief, const ReliefTracer& tracer,
+                       const PathTracingOptions& options)
+    : frame_(frame),
+      tile_(relief),
       tracer_(tracer),
       options_(options),
       choices_(options.seed, RandomPurpose::RayChoice),
       to_light_(to_direction(options.incidence)) {
   if (const auto* clear = std::get_if<Dielectric>(&options.material)) {
-    absorption_per_cell_ = clear->absorption_per_um * tile.unit_um();
+    absorption_per_cell_ = clear->absorption_per_um * frame.unit_um;
   }
 }
 
 void PathWalker::interact(const RayBatch& rays, std::size_t count, WalkSpace& space) const {
-  if (options_.normals == NormalKind::Geometric) {
+  if (options_.normals == NormalKind::Geometric && tile_ != nullptr) {
     interact_geometric(options_.material, options_.grid, rays, space.hits, count, space.met);
   } else {
     interact_one_by_one(tile_, options_.material, options_.grid, options_.normals, rays, space.hits, count, space.met);
@@ -83,14 +83,14 @@ void PathWalker::walk(const IncidentLight& light, const SampleStrata& strata, st
   const RayBatch& rays = space.aimed.rays;
   tracer_.closest_hits(rays, count, space.hits);
   interact(rays, count, space);
+  for (std::size_t k = 0; k < count; ++k) space.start_weight[k] = space.hits.end[k] == RayEnd::Surface ? 1.0F : 0.0F;
+  const bool may_miss = frame_.ends != SceneEnds::Periodic;
   for (std::size_t k = 0; k < count; ++k) {
-    space.start_weight[k] = 0.0F;
-    if (space.hits.end[k] != RayEnd::Surface) {
-      leak(1.0, tally);
-    } else if (light.met_a_copy(space.aimed, space.hits, k)) {
+    if (may_miss && light.missed(space.aimed, space.hits, k)) {
       tally.add(Fate::LeftSideways, 1.0);
-    } else {
-      space.start_weight[k] = 1.0F;
+      space.start_weight[k] = 0.0F;
+    } else if (space.hits.end[k] != RayEnd::Surface) {
+      leak(1.0, tally);
     }
   }
   split(rays, count, first_index, space, tally);
@@ -102,26 +102,10 @@ void PathWalker::split(const RayBatch& rays, std::size_t count, std::uint64_t fi
                        BatchTally& tally) const {
   PathBatch& next = space.paths[0];
   next.count = 0;
-  double absorbed = 0.0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const float weight = space.start_weight[k];
-    if (weight == 0.0F) continue;
-    ++tally.interactions;
-    const float share = space.met.reflectance[k];
-    if (options_.roulette_first && space.met.refracts[k] != 0) {
-      const bool reflect = choices_.uniform4(first_index + k, 2U << 24)[0] < double{share};
-      push(space, k, reflect ? Branch::Reflected : Branch::Refracted, reflect ? Side::Outside : Side::Inside, weight,
-           first_index + k, reflect ? 0 : 1, next);
-      continue;
-    }
-    if (share > 0.0F) push(space, k, Branch::Reflected, Side::Outside, weight * share, first_index + k, 0, next);
-    if (space.met.refracts[k] != 0) {
-      push(space, k, Branch::Refracted, Side::Inside, weight * (1.0F - share), first_index + k, 1, next);
-    } else {
-      absorbed += double{weight * (1.0F - share)};
-    }
-  }
-  tally.add(Fate::Absorbed, absorbed);
+  if (options_.roulette_first)
+    split_by_choice(count, first_index, space, tally);
+  else
+    split_by_weight(count, first_index, space, tally);
   tally.normal_fallbacks += std::exchange(space.met.normal_fallbacks, 0);
   if (options_.estimator != Estimator::Slides) return;
   next.slides_factor.resize(next.rays.size());
@@ -131,36 +115,102 @@ void PathWalker::split(const RayBatch& rays, std::size_t count, std::uint64_t fi
   }
 }
 
+// All that is reflected before all that is refracted: a tracer likes its rays by side.
+void PathWalker::split_by_weight(std::size_t count, std::uint64_t first_index, WalkSpace& space,
+                                 BatchTally& tally) const {
+  const InteractionBatch& met = space.met;
+  std::vector<float>& weight = space.branch_weight;
+  const float* start = space.start_weight.data();
+  std::uint64_t interactions = 0;
+  for (std::size_t k = 0; k < count; ++k) interactions += start[k] > 0.0F ? 1 : 0;
+  tally.interactions += interactions;
+  for (std::size_t k = 0; k < count; ++k) weight[k] = start[k] * met.reflectance[k];
+  push_branch(space.hits,
+              {met.reflected_x, met.reflected_y, met.reflected_z, met.reflected_bin, weight, Side::Outside, 0},
+              first_index, count, space.paths[0]);
+  if (std::holds_alternative<Dielectric>(options_.material)) {
+    for (std::size_t k = 0; k < count; ++k)
+      weight[k] = met.refracts[k] != 0 ? start[k] * (1.0F - met.reflectance[k]) : 0.0F;
+    push_branch(space.hits,
+                {met.refracted_x, met.refracted_y, met.refracted_z, met.refracted_bin, weight, Side::Inside, 1},
+                first_index, count, space.paths[0]);
+  } else if (std::holds_alternative<Conductor>(options_.material)) {
+    double absorbed = 0.0;
+    for (std::size_t k = 0; k < count; ++k) {
+      if (start[k] > 0.0F) absorbed += double{start[k] * (1.0F - met.reflectance[k])};
+    }
+    tally.add(Fate::Absorbed, absorbed);
+  }
+}
+
+// One branch goes on, by roulette.
+void PathWalker::split_by_choice(std::size_t count, std::uint64_t first_index, WalkSpace& space,
+                                 BatchTally& tally) const {
+  PathBatch& next = space.paths[0];
+  for (std::size_t k = 0; k < count; ++k) {
+    const float weight = space.start_weight[k], share = space.met.reflectance[k];
+    if (weight == 0.0F) continue;
+    ++tally.interactions;
+    const bool refracts = space.met.refracts[k] != 0;
+    const bool reflect = !refracts || choices_.uniform4(first_index + k, 2U << 24)[0] < double{share};
+    push(space, k, reflect ? Branch::Reflected : Branch::Refracted, reflect ? Side::Outside : Side::Inside,
+         refracts ? weight : weight * share, first_index + k, reflect ? 0 : 1, next);
+    if (!refracts) tally.add(Fate::Absorbed, double{weight * (1.0F - share)});
+  }
+}
+
 void PathWalker::follow(First first, WalkSpace& space, BatchTally& tally) const {
   for (std::uint32_t order = 1; space.paths[(order - 1) % 2].count > 0; ++order) {
     const PathBatch& paths = space.paths[(order - 1) % 2];
     PathBatch& next = space.paths[order % 2];
     next.count = 0;
     tracer_.closest_hits(paths.rays, paths.count, space.hits);
-    bool any_hit = false;
-    for (std::size_t k = 0; k < paths.count; ++k) {
-      const RayEnd end = space.hits.end[k];
-      if (end == RayEnd::Surface)
-        any_hit = true;
-      else if (first == First::Counts || order > 1 || !is_exit(end, paths.rays.side[k]))
-        end_path(paths, k, end, order, tally);
+    space.ends.sort(paths.rays, space.hits, paths.count);
+    if (first == First::Counts || order > 1) end_all(paths, order, space, tally);
+    for (const std::uint32_t k : space.ends.lost) {
+      const double weight = double{paths.weight[k]};
+      space.hits.end[k] == RayEnd::Sideways ? tally.add(Fate::LeftSideways, weight) : leak(weight, tally);
     }
-    if (!any_hit) continue;
-    if (order < options_.max_bounces) interact(paths.rays, paths.count, space);
-    for (std::size_t k = 0; k < paths.count; ++k) {
-      if (space.hits.end[k] != RayEnd::Surface) continue;
-      // The splat took this light for gone; it is not.
-      if (first == First::InSplat && order == 1) {
-        leave_unhindered(paths.branch[k] == 0 ? Branch::Reflected : Branch::Refracted, paths.rays.dz[k], paths.bin[k],
-                         -double{paths.weight[k]}, tally);
-      }
-      if (order >= options_.max_bounces)
-        tally.add(Fate::CutOff, double{paths.weight[k]});
-      else
-        meet_again(paths, k, order, space, next, tally);
-    }
-    tally.normal_fallbacks += std::exchange(space.met.normal_fallbacks, 0);
+    if (!space.ends.met.empty()) meet_all(first, paths, order, space, next, tally);
   }
+}
+
+// All that leave. Light without a factor of its own for each path goes straight into the bins.
+void PathWalker::end_all(const PathBatch& paths, std::uint32_t order, const WalkSpace& space, BatchTally& tally) const {
+  const EndLists& ends = space.ends;
+  if (options_.estimator == Estimator::Slides) {
+    for (const std::uint32_t k : ends.reflected) {
+      const double factor = double{paths.slides_factor[k]} / to_light_.z();
+      tally.leave(Fate::Reflected, paths.bin[k], double{paths.weight[k]} * factor, order);
+    }
+  } else {
+    tally.leave_all(Fate::Reflected, ends.reflected, paths.bin, paths.weight, order);
+  }
+  if (absorption_per_cell_ == 0.0) {
+    return tally.leave_all(Fate::Transmitted, ends.transmitted, paths.bin, paths.weight, order);
+  }
+  for (const std::uint32_t k : ends.transmitted) {
+    const double weight = double{paths.weight[k]}, kept = attenuation(paths.rays, k, frame_.lowest);
+    tally.add(Fate::Absorbed, weight * (1.0 - kept));
+    tally.leave(Fate::Transmitted, paths.bin[k], weight * kept, order);
+  }
+}
+
+void PathWalker::meet_all(First first, const PathBatch& paths, std::uint32_t order, WalkSpace& space, PathBatch& next,
+                          BatchTally& tally) const {
+  if (order < options_.max_bounces) interact(paths.rays, paths.count, space);
+  for (const std::uint32_t k : space.ends.met) {
+    // The splat took this light for gone; it is not.
+    if (first == First::InSplat && order == 1) {
+      leave_unhindered(paths.branch[k] == 0 ? Branch::Reflected : Branch::Refracted, paths.rays.dz[k], paths.bin[k],
+                       -double{paths.weight[k]}, tally);
+    }
+    if (order >= options_.max_bounces)
+      tally.add(Fate::CutOff, double{paths.weight[k]});
+    else
+      meet_again(paths, k, order, space, next, tally);
+  }
+  tally.normal_fallbacks += std::exchange(space.met.normal_fallbacks, 0);
 }
 
 void PathWalker::meet_again(const PathBatch& paths, std::size_t k, std::uint32_t order, WalkSpace& space,
@@ -170,7 +220,7 @@ void PathWalker::meet_again(const PathBatch& paths, std::size_t k, std::uint32_t
   const float share = space.met.reflectance[k];
   float weight = paths.weight[k];
   if (side == Side::Inside && absorption_per_cell_ > 0.0) {
-    const auto kept = static_cast<float>(attenuation(paths.rays, k, double{space.hits.z[k]}));
+    const auto kept = static_cast<float>(attenuation_to(space.hits, paths.rays, k));
     tally.add(Fate::Absorbed, double{weight} - double{weight * kept});
     weight *= kept;
   }
@@ -191,22 +241,10 @@ void PathWalker::meet_again(const PathBatch& paths, std::size_t k, std::uint32_t
   }
 }
 
-void PathWalker::end_path(const PathBatch& paths, std::size_t k, RayEnd end, std::uint32_t order,
-                          BatchTally& tally) const {
-  const RayBatch& rays = paths.rays;
-  const double weight = double{paths.weight[k]};
-  const bool outside = rays.side[k] == Side::Outside;
-  if (end == RayEnd::Above && outside) {
-    const bool slides = options_.estimator == Estimator::Slides;
-    const double factor = slides ? double{paths.slides_factor[k]} / to_light_.z() : 1.0;
-    return tally.leave(Fate::Reflected, paths.bin[k], weight * factor, order);
-  }
-  if (end == RayEnd::Below && !outside) {
-    const double kept = absorption_per_cell_ > 0.0 ? attenuation(rays, k, tile_.lowest()) : 1.0;
-    tally.add(Fate::Absorbed, weight * (1.0 - kept));
-    return tally.leave(Fate::Transmitted, paths.bin[k], weight * kept, order);
-  }
-  leak(weight, tally);
+// The same up to a hit.
+double PathWalker::attenuation_to(const HitBatch& hits, const RayBatch& rays, std::size_t k) const {
+  if (!hits.way.empty()) return std::exp(-absorption_per_cell_ * double{hits.way[k]});
+  return attenuation(rays, k, double{hits.z[k]});
 }
 
 // Beer–Lambert along a ray inside, up to a height.
@@ -222,7 +260,7 @@ void PathWalker::place_on_surface(const SampleStrata& strata, std::uint64_t firs
   constexpr std::size_t slice = 256;
   std::array<double, slice> u{}, v{};
   HitBatch& hits = space.hits;
-  const double columns = tile_.columns(), rows = tile_.rows();
+  const double columns = tile_->columns(), rows = tile_->rows();
   for (std::size_t begin = 0; begin < count; begin += slice) {
     const std::size_t here = std::min(slice, count - begin);
     strata.points(first + begin, std::span(u).first(here), std::span(v).first(here));
@@ -231,11 +269,11 @@ void PathWalker::place_on_surface(const SampleStrata& strata, std::uint64_t firs
       const double x = u[k] * columns, y = v[k] * rows;
       const auto column = static_cast<std::uint32_t>(x), row = static_cast<std::uint32_t>(y);
       const auto in_x = static_cast<float>(x - column), in_y = static_cast<float>(y - row);
-      const std::uint32_t right = column + 1 == tile_.columns() ? 0 : column + 1;
-      const std::uint32_t upper = row + 1 == tile_.rows() ? 0 : row + 1;
-      const float z00 = tile_.height(column, row), z11 = tile_.height(right, upper);
+      const std::uint32_t right = column + 1 == tile_->columns() ? 0 : column + 1;
+      const std::uint32_t upper = row + 1 == tile_->rows() ? 0 : row + 1;
+      const float z00 = tile_->height(column, row), z11 = tile_->height(right, upper);
       const bool lower_half = in_x > in_y;
-      const float corner = lower_half ? tile_.height(right, row) : tile_.height(column, upper);
+      const float corner = lower_half ? tile_->height(right, row) : tile_->height(column, upper);
       const float a = lower_half ? corner - z00 : z11 - corner, b = lower_half ? z11 - corner : corner - z00;
       hits.end[at] = RayEnd::Surface;
       hits.cell_x[at] = static_cast<std::int32_t>(column);
@@ -244,7 +282,7 @@ void PathWalker::place_on_surface(const SampleStrata& strata, std::uint64_t firs
       hits.y[at] = in_y;
       hits.z[at] = z00 + (a * in_x + b * in_y);
       hits.slope_x[at] = a;
-      hits.slope_y[at] = b / static_cast<float>(tile_.cell_y());
+      hits.slope_y[at] = b / static_cast<float>(tile_->cell_y());
       hits.triangle[at] = lower_half ? 0 : 1;
     }
   }
@@ -303,15 +341,15 @@ void PathWalker::splat_one(const WalkSpace& space, std::size_t k, float weight, 
 }
 
 void PathWalker::splat_row(std::uint32_t row, WalkSpace& space, BatchTally& tally) const {
-  const std::uint32_t upper = row + 1 == tile_.rows() ? 0 : row + 1;
-  const auto per_y = static_cast<float>(1.0 / tile_.cell_y());
-  for (std::uint32_t begin = 0; begin < tile_.columns(); begin += rays_together / 2) {
-    const std::uint32_t end = std::min<std::uint32_t>(tile_.columns(), begin + rays_together / 2);
+  const std::uint32_t upper = row + 1 == tile_->rows() ? 0 : row + 1;
+  const auto per_y = static_cast<float>(1.0 / tile_->cell_y());
+  for (std::uint32_t begin = 0; begin < tile_->columns(); begin += rays_together / 2) {
+    const std::uint32_t end = std::min<std::uint32_t>(tile_->columns(), begin + rays_together / 2);
     std::size_t count = 0;
     for (std::uint32_t column = begin; column < end; ++column) {
-      const std::uint32_t right = column + 1 == tile_.columns() ? 0 : column + 1;
-      const float z00 = tile_.height(column, row), z10 = tile_.height(right, row);
-      const float z01 = tile_.height(column, upper), z11 = tile_.height(right, upper);
+      const std::uint32_t right = column + 1 == tile_->columns() ? 0 : column + 1;
+      const float z00 = tile_->height(column, row), z10 = tile_->height(right, row);
+      const float z01 = tile_->height(column, upper), z11 = tile_->height(right, upper);
       space.hits.slope_x[count] = z10 - z00;
       space.hits.slope_y[count++] = (z11 - z10) * per_y;
       space.hits.slope_x[count] = z11 - z01;

@@ -8,6 +8,7 @@
 #include "forward/scattering/batch_tally.h"
 #include "forward/scattering/incident_light.h"
 #include "forward/scattering/interaction_batch.h"
+#include "forward/scattering/path_branch.h"
 #include "forward/scattering/path_tracing.h"
 #include "forward/tracing/periodic_tile.h"
 #include "forward/tracing/relief_tracer.h"
@@ -16,8 +17,9 @@ namespace mezzotint {
 
 /// Paths on their way: their rays and what they carry, all after the same number of interactions.
 struct PathBatch {
+  // Room for a vector more than asked for, as in RayBatch.
   explicit PathBatch(std::size_t capacity)
-      : rays(capacity), weight(capacity), bin(capacity), number(capacity), branch(capacity) {}
+      : rays(capacity), weight(capacity + 16), bin(capacity + 16), number(capacity + 16), branch(capacity + 16) {}
   RayBatch rays;
   std::vector<float> weight;
   std::vector<std::uint32_t> bin;     ///< of the map, should nothing stand in the way
@@ -37,15 +39,18 @@ struct WalkSpace {
   HitBatch shadows{rays_together};
   InteractionBatch met{2 * rays_together};
   std::array<PathBatch, 2> paths = {PathBatch(2 * rays_together), PathBatch(2 * rays_together)};
-  std::vector<float> start_weight = std::vector<float>(rays_together);
+  EndLists ends{2 * rays_together};
+  std::vector<float> start_weight = std::vector<float>(rays_together + 16);
+  std::vector<float> branch_weight = std::vector<float>(rays_together + 16);
   std::vector<std::uint8_t> lit = std::vector<std::uint8_t>(rays_together);
 };
 
 /// Follows light from its first ray to where it ends, many paths at a time. Knows nothing of how rays find facets.
 class PathWalker {
 public:
-  /// All that is given must outlive the walker.
-  PathWalker(const PeriodicTile& tile, const ReliefTracer& tracer, const PathTracingOptions& options);
+  /// All that is given must outlive the walker. Without a relief only `walk` can be used.
+  PathWalker(const SceneFrame& frame, const PeriodicTile* relief, const ReliefTracer& tracer,
+             const PathTracingOptions& options);
 
   /// The light of strata first … first + count − 1, each of weight 1.
   void walk(const IncidentLight& light, const SampleStrata& strata, std::uint64_t first, std::uint64_t first_index,
@@ -65,8 +70,12 @@ private:
   void interact(const RayBatch& rays, std::size_t count, WalkSpace& space) const;
   void split(const RayBatch& rays, std::size_t count, std::uint64_t first_index, WalkSpace& space,
              BatchTally& tally) const;
+  void split_by_choice(std::size_t count, std::uint64_t first_index, WalkSpace& space, BatchTally& tally) const;
+  void split_by_weight(std::size_t count, std::uint64_t first_index, WalkSpace& space, BatchTally& tally) const;
   void follow(First first, WalkSpace& space, BatchTally& tally) const;
-  void end_path(const PathBatch& paths, std::size_t k, RayEnd end, std::uint32_t order, BatchTally& tally) const;
+  void end_all(const PathBatch& paths, std::uint32_t order, const WalkSpace& space, BatchTally& tally) const;
+  void meet_all(First first, const PathBatch& paths, std::uint32_t order, WalkSpace& space, PathBatch& next,
+                BatchTally& tally) const;
   void meet_again(const PathBatch& paths, std::size_t k, std::uint32_t order, WalkSpace& space, PathBatch& next,
                   BatchTally& tally) const;
   void place_on_surface(const SampleStrata& strata, std::uint64_t first, std::size_t count, WalkSpace& space) const;
@@ -74,8 +83,10 @@ private:
   void shine(std::size_t count, WalkSpace& space) const;
   void find_lit(std::size_t count, WalkSpace& space) const;
   [[nodiscard]] double attenuation(const RayBatch& rays, std::size_t k, double end_height) const;
+  [[nodiscard]] double attenuation_to(const HitBatch& hits, const RayBatch& rays, std::size_t k) const;
 
-  const PeriodicTile& tile_;
+  SceneFrame frame_;
+  const PeriodicTile* tile_;  ///< nullptr for a mesh
   const ReliefTracer& tracer_;
   const PathTracingOptions& options_;
   RandomStream choices_;

@@ -219,7 +219,7 @@ TraceResult summarise(const PathTracingOptions& options, const TraceState& state
   bsdf.energy = audit(estimate(shares, fate_count, std::vector<double>(fate_count, 1.0), energy));
   const double met = 1.0 - bsdf.energy.left_sideways.value;
   if (!(met > 0.0)) {
-    throw MethodError("all light met mirrored copies before the measured patch; it is too small for this incidence");
+    throw MethodError("no light met the measured patch: it is too small for this incidence, or full of holes");
   }
   const std::vector<double> scale = map_scale(options.grid, met);
   bsdf.reflection =

@@ -95,12 +95,12 @@ void append(const Sentences& more, Sentences& sentences) {
 
 }  // namespace
 
-std::vector<std::string> trace_warnings(const PathTracingOptions& options, const Bsdf& bsdf) {
+std::vector<std::string> trace_warnings(const PathTracingOptions& options, const Bsdf& bsdf, bool is_mesh) {
   Sentences sentences;
   const double error = relative_error(bsdf.grid, bsdf.reflection);
   look_for_created_energy(options, bsdf, sentences);
   look_for_cut_off(options, bsdf, error, sentences);
-  look_for_lost_light(bsdf, sentences);
+  if (!is_mesh) look_for_lost_light(bsdf, sentences);
   look_at_normals(bsdf, sentences);
   look_at_tolerance(options, bsdf, error, sentences);
   append(map_warnings(bsdf), sentences);

@@ -47,21 +47,16 @@ std::vector<std::uint32_t> number_used_samples(const std::vector<std::array<std:
 }
 
 std::array<float, 3> position_um(const HeightField& field, std::size_t sample) {
-  const auto column = static_cast<double>(sample % field.columns());
-  const auto row = static_cast<double>(sample / field.columns());
-  return {static_cast<float>(column * field.grid().pitch_x.um()), static_cast<float>(row * field.grid().pitch_y.um()),
-          field.heights_um()[sample]};
+  const std::size_t column = sample % field.columns(), row = sample / field.columns();
+  return {static_cast<float>(static_cast<double>(column) * field.grid().pitch_x.um()),
+          static_cast<float>(static_cast<double>(row) * field.grid().pitch_y.um()), field.heights_um()[sample]};
 }
 
-}  // namespace
-
-TriangleMesh to_mesh(const HeightField& field) {
-  require(field.columns() >= 2 && field.rows() >= 2, "a mesh needs a height field of at least 2 × 2 samples");
+TriangleMesh mesh_of(const HeightField& field, const std::vector<std::array<float, 3>>& normals) {
   TriangleMesh mesh;
   mesh.triangles = sample_triangles(field);
   require(!mesh.triangles.empty(), "no cell with four measured corners: the relief has no triangles");
   const auto numbers = number_used_samples(mesh.triangles, field.grid().size());
-  const auto normals = pseudo_normals(field);
   for (std::size_t sample = 0; sample < numbers.size(); ++sample) {
     if (numbers[sample] == unused) continue;
     mesh.vertices_um.push_back(position_um(field, sample));
@@ -71,6 +66,30 @@ TriangleMesh to_mesh(const HeightField& field) {
     for (std::uint32_t& corner : triangle) corner = numbers[corner];
   }
   return mesh;
+}
+
+}  // namespace
+
+TriangleMesh to_mesh(const HeightField& field) {
+  require(field.columns() >= 2 && field.rows() >= 2, "a mesh needs a height field of at least 2 × 2 samples");
+  return mesh_of(field, pseudo_normals(field));
+}
+
+TriangleMesh to_closed_mesh(const HeightField& field) {
+  require(field.periodic(), "only a periodic relief can be closed at its ends");
+  require(field.columns() >= 2 && field.rows() >= 2, "a mesh needs a height field of at least 2 × 2 samples");
+  const std::size_t columns = field.columns(), rows = field.rows();
+  HeightField whole({columns + 1, rows + 1, field.grid().pitch_x, field.grid().pitch_y}, Continuation::Mirrored);
+  const auto normals = pseudo_normals(field);
+  std::vector<std::array<float, 3>> whole_normals;
+  whole_normals.reserve(whole.grid().size());
+  for (std::size_t r = 0; r <= rows; ++r) {
+    for (std::size_t c = 0; c <= columns; ++c) {
+      whole.at(c, r) = field.at(c % columns, r % rows);
+      whole_normals.push_back(normals[(r % rows) * columns + c % columns]);
+    }
+  }
+  return mesh_of(whole, whole_normals);
 }
 
 }  // namespace mezzotint

@@ -26,6 +26,10 @@ struct TriangleMesh {
 /// @throws InvalidInput for fewer than 2 × 2 samples, or when no whole cell is left.
 [[nodiscard]] TriangleMesh to_mesh(const HeightField& field);
 
+/// The same of a periodic field with the cells that close it: the mesh ends where its next copy begins.
+/// @throws InvalidInput for a field that is not periodic, and as `to_mesh`.
+[[nodiscard]] TriangleMesh to_closed_mesh(const HeightField& field);
+
 /// One unit normal a sample, row after row: angle-weighted pseudo-normals of the mesh that `to_mesh` makes,
 /// summed in double. Samples that no triangle uses get (0, 0, 1).
 /// Source   Bærentzen & Aanæs, "Signed distance computation using the angle weighted pseudonormal", 2005.

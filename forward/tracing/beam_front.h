@@ -17,7 +17,8 @@ namespace mezzotint {
 ///
 /// Frame    aims in cells of the tile (index units), periodic like it.
 /// Bound    conservative: no ray of the beam meets the relief above it.
-/// Cost     one pass over the cells, each split where the beam moves on by more than a cell: some 10 ns a cell at 45°.
+/// Cost     one pass over the cells, each split where the beam moves on by more than a cell: 11, 12 and 20 ns a cell at
+///          0, 45 and 80°.
 class BeamFront {
 public:
   /// @param travel  direction in which the light travels, downwards; a unit vector in cells of pitch_x.
@@ -28,14 +29,16 @@ public:
     return bound_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
                   static_cast<std::size_t>(column)];
   }
+  /// All of them, row after row.
+  [[nodiscard]] const float* heights() const { return bound_.data(); }
   /// The way (cells) that aims move for each unit of height: place = aim + (z − plane)·shift.
   [[nodiscard]] double shift_x() const { return shift_x_; }
   [[nodiscard]] double shift_y() const { return shift_y_; }
 
 private:
-  void cover(const HeightPyramid& relief, std::int32_t first_row, std::int32_t end_row,
-             std::vector<float>& bound) const;
-  void raise(std::vector<float>& bound, double left, double right, double low, double high, float z) const;
+  void cast(const HeightPyramid& relief, std::int32_t first_row, std::int32_t end_row,
+            std::vector<float>& corners) const;
+  void spread(const std::vector<float>& a, const std::vector<float>& b);
 
   std::int32_t columns_, rows_;
   double plane_, shift_x_, shift_y_;

@@ -6,7 +6,7 @@
 namespace mezzotint {
 
 /// Rays through a periodic height field, many at once: up and down a pyramid of highest (from below: lowest) heights,
-/// then cell by cell, with free lanes of the vector unit refilled from the batch.
+/// then cell by cell; rays that need the same thing next share a vector.
 ///
 /// Facets   the same two triangles a cell as PeriodicTile. Met where a ray goes from their front to their back.
 /// Edges    watertight without an epsilon: a ray that has left a facet moves away from it, and one that rounding

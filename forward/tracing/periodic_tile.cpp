@@ -55,6 +55,20 @@ PeriodicTile::PeriodicTile(const HeightField& field) : mirrored_(!field.periodic
   }
 }
 
+SceneFrame PeriodicTile::frame() const {
+  const double part = mirrored_ ? 0.5 : 1.0;
+  return {.columns = columns_,
+          .rows = rows_,
+          .cell_y = cell_y_,
+          .unit_um = unit_um_,
+          .highest = highest_,
+          .lowest = lowest(),
+          .mean = mean_,
+          .ends = mirrored_ ? SceneEnds::Mirrored : SceneEnds::Periodic,
+          .aimed_columns = part * columns_,
+          .aimed_rows = part * rows_};
+}
+
 void PeriodicTile::prepare_normals() {
   if (!normals_.empty()) return;
   const Grid grid{columns_, rows_, Length::from_um(1.0), Length::from_um(cell_y_)};

@@ -6,6 +6,7 @@
 
 #include "forward/optics/direction.h"
 #include "forward/surface/height_field.h"
+#include "forward/tracing/scene_frame.h"
 
 namespace mezzotint {
 
@@ -35,10 +36,10 @@ public:
   /// Mean height: the macrosurface, at which rays are aimed.
   [[nodiscard]] double mean() const { return mean_; }
 
-  /// The part of the tile that was measured: everything, or the first quarter of a mirrored one.
+  /// Whether only the first quarter of the tile was measured.
   [[nodiscard]] bool mirrored() const { return mirrored_; }
-  [[nodiscard]] double original_length_x() const { return mirrored_ ? 0.5 * length_x() : length_x(); }
-  [[nodiscard]] double original_length_y() const { return mirrored_ ? 0.5 * length_y() : length_y(); }
+  /// What following light needs to know of it; rays are aimed at what was measured.
+  [[nodiscard]] SceneFrame frame() const;
 
   /// Height of a sample; column < columns(), row < rows().
   [[nodiscard]] float height(std::uint32_t column, std::uint32_t row) const {

@@ -1,12 +1,10 @@
 #include "forward/tracing/relief_scene.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <limits>
 
-#include "forward/base/error.h"
+#include "forward/tracing/embree_support.h"
 
 namespace mezzotint {
 
@@ -88,31 +86,9 @@ void accept_facing_triangle(const RTCFilterFunctionNArguments* arguments) {
   context->best_distance = distance;
 }
 
-[[noreturn]] void fail(RTCError code, const char* what) {
-  throw DeviceError(std::string("Embree: ") + what + " failed (error " + std::to_string(static_cast<int>(code)) +
-                    (code == RTC_ERROR_OUT_OF_MEMORY ? ", out of memory; a smaller patch would fit)" : ")"));
-}
-
 }  // namespace
 
-struct ReliefScene::Handles {
-  Handles() : device(rtcNewDevice(nullptr)) {
-    if (device == nullptr) fail(rtcGetDeviceError(nullptr), "starting");
-    if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_FILTER_FUNCTION_SUPPORTED) == 0) {
-      rtcReleaseDevice(device);
-      throw MethodError("this build of Embree has no filter functions; rays could not leave a surface safely");
-    }
-    scene = rtcNewScene(device);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
-    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
-  }
-  ~Handles() {
-    rtcReleaseScene(scene);
-    rtcReleaseDevice(device);
-  }
-  Handles(const Handles&) = delete;
-  Handles& operator=(const Handles&) = delete;
-
+struct ReliefScene::Handles : EmbreeScene {
   void attach(const PeriodicTile& tile);
   void fill_vertices(const PeriodicTile& tile, float* vertex) const;
   void fill_triangles(std::uint32_t* corner) const;
@@ -129,8 +105,6 @@ struct ReliefScene::Handles {
            triangle % 2;
   }
 
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
   Border border{};
   std::uint32_t columns = 0;  // cells, border included
   std::uint32_t rows = 0;
@@ -178,10 +152,8 @@ void ReliefScene::Handles::attach(const PeriodicTile& tile) {
     rtcAttachGeometry(scene, geometry);
   }
   rtcReleaseGeometry(geometry);
-  if (vertex == nullptr || corner == nullptr) fail(rtcGetDeviceError(device), "taking memory for the relief");
-  rtcCommitScene(scene);
-  const RTCError error = rtcGetDeviceError(device);
-  if (error != RTC_ERROR_NONE) fail(error, "building the tree of triangles");
+  if (vertex == nullptr || corner == nullptr) fail_embree(rtcGetDeviceError(device), "taking memory for the relief");
+  commit(scene);
 }
 
 ReliefScene::ReliefScene(const PeriodicTile& tile) : tile_(tile), handles_(std::make_unique<Handles>()) {

@@ -257,5 +257,70 @@ TEST(BsdfFile, KeepsTheOrdersOfInteraction) {
   }
 }
 
+// Three channels that differ in everything but grid and light.
+std::vector<Bsdf> coloured_example() {
+  std::vector<Bsdf> channels(3, example({9, 6}));
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto shade = static_cast<double>(c);
+    channels[c].reflection.mean = wavy(54, 10.0 + shade);
+    channels[c].energy.reflected = {0.1 * shade, 1e-3};
+    channels[c].provenance["material"] = "dielectric:1.5" + std::to_string(c);
+    channels[c].reflection_orders = {{wavy(54, 20.0 + shade), wavy(54, 1.0), {}, {}}};
+    for (MapEstimate* map : {&channels[c].reflection, &channels[c].transmission}) {
+      map->low_95 = wavy(54, 30.0 + shade);
+      map->high_95 = wavy(54, 40.0 + shade);
+    }
+  }
+  return channels;
+}
+
+TEST(BsdfFileOfThreeChannels, MakesTheRoundTrip) {
+  const test::TemporaryFolder folder;
+  const std::vector<Bsdf> before = coloured_example();
+  write_channels_exr(before, folder / "rgb.exr");
+  const std::vector<Bsdf> after = read_channels_exr(folder / "rgb.exr");
+  ASSERT_EQ(after.size(), 3U);
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_EQ(after[c].provenance, before[c].provenance);
+    EXPECT_EQ(after[c].energy.reflected.value, before[c].energy.reflected.value);
+    EXPECT_EQ(after[c].incidence.phi.degrees(), before[c].incidence.phi.degrees());
+    for (std::size_t k = 0; k < 54; ++k) {
+      EXPECT_EQ(after[c].reflection.mean[k], double{static_cast<float>(before[c].reflection.mean[k])});
+      EXPECT_EQ(after[c].transmission.high_95[k], double{static_cast<float>(before[c].transmission.high_95[k])});
+      EXPECT_EQ(after[c].transmission.half_b[k], double{static_cast<float>(before[c].transmission.half_b[k])});
+    }
+    ASSERT_EQ(after[c].reflection_orders.size(), 1U);
+    EXPECT_EQ(after[c].reflection_orders[0].mean[7],
+              double{static_cast<float>(before[c].reflection_orders[0].mean[7])});
+  }
+}
+
+TEST(BsdfFileOfThreeChannels, IsNotTakenForOne) {
+  const test::TemporaryFolder folder;
+  write_channels_exr(coloured_example(), folder / "rgb.exr");
+  EXPECT_NE(refusal(folder / "rgb.exr").find("three channels"), std::string::npos);
+  write_exr(example({9, 6}), folder / "one.exr");
+  EXPECT_EQ(read_channels_exr(folder / "one.exr").size(), 1U);
+}
+
+TEST(BsdfFileOfThreeChannels, NeedsThreeThatBelongTogether) {
+  const test::TemporaryFolder folder;
+  std::vector<Bsdf> channels = coloured_example();
+  EXPECT_THROW(write_channels_exr(std::span(channels).first(2), folder / "rgb.exr"), InvalidInput);
+  channels[2].incidence.theta = Angle::from_degrees(21.0);
+  EXPECT_THROW(write_channels_exr(channels, folder / "rgb.exr"), InvalidInput);
+  channels = coloured_example();
+  channels[1] = example({9, 7});
+  EXPECT_THROW(write_channels_exr(channels, folder / "rgb.exr"), InvalidInput);
+}
+
+TEST(BsdfFile, HoldsAsManyOrdersAsThereMayBe) {
+  const test::TemporaryFolder folder;
+  std::vector<Bsdf> channels(3, example({2, 2}));
+  for (Bsdf& bsdf : channels) bsdf.reflection_orders.assign(64, {wavy(4, 1.0), wavy(4, 2.0), {}, {}});
+  write_channels_exr(channels, folder / "orders.exr");
+  EXPECT_EQ(read_channels_exr(folder / "orders.exr")[2].reflection_orders.size(), 64U);
+}
+
 }  // namespace
 }  // namespace mezzotint

@@ -59,5 +59,20 @@ TEST(Material, MayAbsorbInside) {
   EXPECT_EQ(to_string(parse_material("dielectric:1.5,0")), "dielectric:1.5");
 }
 
+TEST(Material, MayBeGivenForThreeChannels) {
+  const std::vector<Material> glass = parse_materials("dielectric:1.51/1.52,0.1/1.53");
+  ASSERT_EQ(glass.size(), 3U);
+  EXPECT_EQ(to_string(glass[0]), "dielectric:1.51");
+  EXPECT_EQ(to_string(glass[1]), "dielectric:1.52,0.1");
+  EXPECT_EQ(to_string(glass[2]), "dielectric:1.53");
+  EXPECT_EQ(to_string(parse_materials("conductor:0.2,3.9/0.9,2.4/1.1,1.9")[2]), "conductor:1.1,1.9");
+  EXPECT_EQ(parse_materials("mirror").size(), 1U);
+  for (const char* text :
+       {"", "dielectric:1.5/1.6", "dielectric:1.5/1.6/1.7/", "dielectric:1.5/1.6/", "dielectric:1.5//1.6",
+        "dielectric:1/2/3/4", "conductor:1,2/mirror/1,2", "mirror/mirror/mirror", "/", ":", "dielectric:"}) {
+    EXPECT_THROW((void)parse_materials(text), InvalidInput) << text;
+  }
+}
+
 }  // namespace
 }  // namespace mezzotint

@@ -136,6 +136,21 @@ TEST(PseudoNormals, OfAPeriodicFieldContinueOverItsEnds) {
   }
 }
 
+TEST(ClosedMesh, EndsWhereItsNextCopyBegins) {
+  const auto wave = [](double c, double r) { return std::sin(0.7 * c) + std::cos(1.1 * r); };
+  const HeightField field = sampled({5, 4, 2.0_um, 3.0_um}, Continuation::Periodic, wave);
+  const TriangleMesh mesh = to_closed_mesh(field);
+  ASSERT_EQ(mesh.vertices_um.size(), 6U * 5U);
+  EXPECT_EQ(mesh.triangles.size(), 2U * 5U * 4U);
+  for (std::size_t r = 0; r < 5; ++r) {
+    EXPECT_EQ(mesh.vertices_um[6 * r + 5],
+              (std::array{10.0F, 3.0F * static_cast<float>(r), mesh.vertices_um[6 * r][2]}));
+    EXPECT_EQ(mesh.normals[6 * r + 5], mesh.normals[6 * r]);
+  }
+  for (std::size_t c = 0; c < 6; ++c) EXPECT_EQ(mesh.vertices_um[24 + c][2], mesh.vertices_um[c][2]);
+  EXPECT_THROW((void)to_closed_mesh(crop(field, 0, 0, 3, 3)), InvalidInput);
+}
+
 TEST(PseudoNormals, PointUpWhereThereIsNothing) {
   HeightField field({3, 3, 1.0_um, 1.0_um}, Continuation::Mirrored);
   field.at(1, 1) = missing;
