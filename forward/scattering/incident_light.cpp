@@ -29,8 +29,8 @@ IncidentLight::IncidentLight(const SceneFrame& frame, const PathTracingOptions& 
   // Directions are drawn from the pixel until one lies in the disc; a sliver would take for ever.
   require(projected_solid_angles(options.grid)[bin] > 1e-3 * width * height,
           "the bin of the incidence lies outside of the disc but for a sliver; choose an incidence farther from 90°");
-  pixel_ = Pixel{static_cast<double>(bin % options.grid.width) * width - 1.0,
-                 static_cast<double>(bin / options.grid.width) * height - 1.0, width, height};
+  const std::size_t column = bin % options.grid.width, row = bin / options.grid.width;
+  pixel_ = Pixel{static_cast<double>(column) * width - 1.0, static_cast<double>(row) * height - 1.0, width, height};
 }
 
 Direction IncidentLight::direction_in_pixel(std::uint64_t index) const {

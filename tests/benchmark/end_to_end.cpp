@@ -34,7 +34,7 @@ private:
 };
 
 struct Times {
-  double tracer = 0.0, walk = 0.0, whole = 0.0;
+  double tracer = 0.0, walk = 0.0;
   std::size_t rays = 0;
 };
 
@@ -58,7 +58,16 @@ Times walk_all(const PeriodicTile& tile, const HeightFieldTracer& tracer, const 
       tallies[batch].close_slice();
     }
   }
-  return {timed.seconds, thread_seconds() - before, 0.0, timed.traced};
+  return {timed.seconds, thread_seconds() - before, timed.traced};
+}
+
+PathTracingOptions paths_of(double theta_deg, const Material& material, std::uint32_t bits) {
+  PathTracingOptions run;
+  run.incidence = {Angle::from_degrees(theta_deg), Angle::from_degrees(30.0)};
+  run.material = material;
+  run.control_variate = ControlVariate::Off;
+  run.samples = std::uint64_t{run.batches} << bits;
+  return run;
 }
 
 }  // namespace
@@ -69,35 +78,33 @@ nlohmann::json end_to_end(const RaceOptions& options) {
   const PeriodicTile tile(field);
   const HeightFieldTracer tracer(tile);
   PathTracer paths(field);
-  const std::uint32_t bits = options.bits + 1 - 3;  // twice the rays of the race, in 8 batches
-  fmt::print("\nEnd to end, {}² cells, 2^{} paths, one thread: tracer's calls ÷ all\n", options.size, bits + 3);
+  const std::uint32_t bits = options.bits;  // a batch has the rays of the race
+  fmt::print("\nEnd to end, {}² cells, 2^{} paths in 8 batches, one thread: tracer's calls ÷ all\n", options.size,
+             bits + 3);
   fmt::print("{:18}{:>8}{:>14}{:>14}{:>10}{:>12}\n", "", "Mrays", "tracer Mr/s", "whole Mpath/s", "÷ walk", "÷ whole");
   nlohmann::json rows = nlohmann::json::array();
   for (const bool mirror : {true, false}) {
     for (const double theta : {0.0, 45.0, 80.0}) {
-      PathTracingOptions run;
-      run.incidence = {Angle::from_degrees(theta), Angle::from_degrees(30.0)};
-      run.material = mirror ? Material{Mirror{}} : Material{Dielectric{1.5}};
-      run.control_variate = ControlVariate::Off;
-      run.samples = std::uint64_t{run.batches} << bits;
+      const PathTracingOptions run = paths_of(theta, mirror ? Material{Mirror{}} : Material{Dielectric{1.5}}, bits);
       std::vector<double> of_walk, of_whole, rates, path_rates;
-      Times times;
+      std::size_t rays = 0;
       for (int repetition = 0; repetition < options.repetitions; ++repetition) {
-        times = walk_all(tile, tracer, run, bits);
+        const Times times = walk_all(tile, tracer, run, bits);
         const double before = thread_seconds();
         (void)paths.trace(run);
-        times.whole = thread_seconds() - before;
+        const double whole = thread_seconds() - before;
+        rays = times.rays;
         of_walk.push_back(times.tracer / times.walk);
-        of_whole.push_back(times.tracer / times.whole);
-        rates.push_back(1e-6 * static_cast<double>(times.rays) / times.tracer);
-        path_rates.push_back(1e-6 * static_cast<double>(run.samples) / times.whole);
+        of_whole.push_back(times.tracer / whole);
+        rates.push_back(1e-6 * static_cast<double>(rays) / times.tracer);
+        path_rates.push_back(1e-6 * static_cast<double>(run.samples) / whole);
       }
       const std::string name = fmt::format("{} {:.0f}°", mirror ? "mirror" : "dielectric", theta);
-      fmt::print("{:18}{:>8.1f}{:>14.1f}{:>14.1f}{:>10.2f}{:>12.2f}\n", name, 1e-6 * static_cast<double>(times.rays),
+      fmt::print("{:18}{:>8.1f}{:>14.1f}{:>14.1f}{:>10.2f}{:>12.2f}\n", name, 1e-6 * static_cast<double>(rays),
                  median(rates), median(path_rates), median(of_walk), median(of_whole));
       std::fflush(stdout);
       rows.push_back({{"run", name},
-                      {"rays", times.rays},
+                      {"rays", rays},
                       {"tracer_mrays_per_s", median(rates)},
                       {"mpaths_per_s", median(path_rates)},
                       {"tracer_over_walk", median(of_walk)},

@@ -73,13 +73,50 @@ std::size_t disagreements(const PeriodicTile& tile, const HeightFieldTracer& tra
   return apart;
 }
 
-std::vector<Rival> embree_modes(EmbreeRival& grid, EmbreeRival& triangles) {
-  return {{"grid I1", [&](const RaySet& r) { return grid.seconds(r, Call::One, false); }},
-          {"grid I16", [&](const RaySet& r) { return grid.seconds(r, Call::Packet, false); }},
-          {"grid I16c", [&](const RaySet& r) { return grid.seconds(r, Call::Packet, true); }},
-          {"grid 1M", [&](const RaySet& r) { return grid.seconds(r, Call::Stream, false); }},
-          {"grid 1Mc", [&](const RaySet& r) { return grid.seconds(r, Call::Stream, true); }},
-          {"tri I16c", [&](const RaySet& r) { return triangles.seconds(r, Call::Packet, true); }}};
+// A tree of triangles takes 170 bytes a cell: at 4096² it would measure the machine's memory.
+constexpr std::size_t largest_with_triangles = 2048;
+
+std::vector<Rival> embree_modes(EmbreeRival& grid, EmbreeRival* triangles) {
+  std::vector<Rival> modes = {
+      {"grid I1", [&](const RaySet& r) { return grid.seconds(r, Call::One, false); }},
+      {"grid I16", [&](const RaySet& r) { return grid.seconds(r, Call::Packet, false); }},
+      {"grid I16c", [&](const RaySet& r) { return grid.seconds(r, Call::Packet, true); }},
+      {"grid 1M", [&](const RaySet& r) { return grid.seconds(r, Call::Stream, false); }},
+      {"grid 1Mc", [&](const RaySet& r) { return grid.seconds(r, Call::Stream, true); }},
+  };
+  if (triangles != nullptr)
+    modes.push_back({"tri I16c", [=](const RaySet& r) { return triangles->seconds(r, Call::Packet, true); }});
+  return modes;
+}
+
+// One line of the table: rivals turn by turn, so that a change of load meets all of them.
+nlohmann::json race_with(const RaySet& rays, const std::vector<Rival>& rivals, int repetitions) {
+  std::vector<std::vector<double>> rates(rivals.size()), ratios(rivals.size());
+  for (int repetition = 0; repetition < repetitions; ++repetition) {
+    for (std::size_t k = 0; k < rivals.size(); ++k) {
+      rates[k].push_back(1e-6 * static_cast<double>(rays.size()) / rivals[k].seconds(rays));
+      ratios[k].push_back(rates[0].back() / rates[k].back());
+    }
+  }
+  nlohmann::json row = {{"rays", rays.name}, {"count", rays.size()}};
+  double least = HUGE_VAL;
+  fmt::print("{:14}", rays.name);
+  for (std::size_t k = 0; k < rivals.size(); ++k) {
+    fmt::print("{:>10.1f}", median(rates[k]));
+    row["mrays_per_s"][rivals[k].name] = median(rates[k]);
+    if (k > 0) least = std::min(least, median(ratios[k]));
+  }
+  if (rivals.size() > 1) row["ours_over_best"] = least;
+  return row;
+}
+
+void print_head(const RaceOptions& options, const PeriodicTile& tile, const std::vector<Rival>& rivals) {
+  fmt::print(
+      "\n{0}² cells, s = {1}, {2:.1f} cells high, 2^{3} rays, Mrays/s on one thread (c: COHERENT), median of {4}\n",
+      options.size, options.gradient, 2.0 * tile.highest(), options.bits, options.repetitions);
+  fmt::print("{:14}", "rays");
+  for (const Rival& rival : rivals) fmt::print("{:>10}", rival.name);
+  fmt::print("{}\n", options.embree ? " ours ÷ best   apart" : "");
 }
 
 }  // namespace
@@ -91,38 +128,18 @@ nlohmann::json race(const RaceOptions& options) {
   std::vector<Rival> rivals = {{"ours", [&](const RaySet& r) { return our_seconds(tracer, r); }}};
   if (options.embree) {
     grid.emplace(tile, Mesh::Grid);
-    triangles.emplace(tile, Mesh::Triangles);
-    for (Rival& mode : embree_modes(*grid, *triangles)) rivals.push_back(std::move(mode));
+    if (options.size <= largest_with_triangles) triangles.emplace(tile, Mesh::Triangles);
+    for (Rival& mode : embree_modes(*grid, triangles ? &*triangles : nullptr)) rivals.push_back(std::move(mode));
   }
-  fmt::print(
-      "\n{0}² cells, s = {1}, {2:.1f} cells high, 2^{3} rays, Mrays/s on one thread (c: COHERENT), median of {4}\n",
-      options.size, options.gradient, 2.0 * tile.highest(), options.bits, options.repetitions);
-  fmt::print("{:14}", "rays");
-  for (const Rival& rival : rivals) fmt::print("{:>10}", rival.name);
-  fmt::print("{:>12}{:>8}\n", "ours ÷ best", "apart");
+  print_head(options, tile, rivals);
   nlohmann::json rows = nlohmann::json::array();
   for (const RaySet& rays : ray_sets(tile, tracer, options.bits)) {
-    std::vector<std::vector<double>> rates(rivals.size()), ratios(rivals.size());
-    for (int repetition = 0; repetition < options.repetitions; ++repetition) {
-      for (std::size_t k = 0; k < rivals.size(); ++k) {
-        rates[k].push_back(1e-6 * static_cast<double>(rays.size()) / rivals[k].seconds(rays));
-        ratios[k].push_back(rates[0].back() / rates[k].back());
-      }
-    }
-    nlohmann::json row = {{"rays", rays.name}, {"count", rays.size()}};
-    double best = HUGE_VAL;
-    fmt::print("{:14}", rays.name);
-    for (std::size_t k = 0; k < rivals.size(); ++k) {
-      fmt::print("{:>10.1f}", median(rates[k]));
-      row["mrays_per_s"][rivals[k].name] = median(rates[k]);
-      if (k > 0) best = std::min(best, median(ratios[k]));
-    }
+    nlohmann::json row = race_with(rays, rivals, options.repetitions);
     if (options.embree) {
       std::vector<float> distances;
       (void)grid->seconds(rays, Call::One, false, &distances);
-      row["ours_over_best"] = best;
       row["apart"] = disagreements(tile, tracer, rays, distances);
-      fmt::print("{:>12.2f}{:>8}", best, row["apart"].get<std::size_t>());
+      fmt::print("{:>12.2f}{:>8}", row["ours_over_best"].get<double>(), row["apart"].get<std::size_t>());
     }
     fmt::print("\n");
     std::fflush(stdout);
