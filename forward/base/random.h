@@ -16,7 +16,8 @@ enum class RandomPurpose : std::uint32_t {
   SearchStart = 6,
   StageError = 7,
   InstrumentNoise = 8,
-  Test = 9
+  Test = 9,
+  Pilot = 10
 };
 
 /// Random numbers by counter: a pure function of (seed, purpose, index, draw). No state is shared,

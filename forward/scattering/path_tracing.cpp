@@ -18,6 +18,7 @@
 #include "forward/scattering/batch_tally.h"
 #include "forward/scattering/incident_light.h"
 #include "forward/scattering/path_walk.h"
+#include "forward/scattering/planned_splat.h"
 #include "forward/scattering/trace_result.h"
 #include "forward/scattering/trace_state.h"
 #include "forward/tracing/beam_front.h"
@@ -32,8 +33,6 @@ namespace {
 constexpr std::uint64_t paths_per_slice = std::uint64_t{1} << 14;
 // The first of several passes: enough paths for a first idea of the error.
 constexpr std::uint64_t paths_of_first_pass = std::uint64_t{1} << 15;
-// The splat's rows are summed in so many groups, whatever the number of threads.
-constexpr std::uint32_t splat_groups = 16;
 
 void require_valid(const PathTracingOptions& options) {
   mezzotint::require_valid(options.grid);
@@ -127,46 +126,30 @@ struct PathTracer::Scene {
 
   // The splat of one setting, kept for the next run of the same.
   const BatchTally& splat(const PathTracingOptions& options);
+  // The splat with its shadows, and where it has to be corrected; kept like it.
+  const PlannedSplat& planned(const PathTracingOptions& options);
 
   PeriodicTile tile;
   std::optional<HeightFieldTracer> fast;
   std::optional<ReliefScene> triangles;
   std::optional<double> known_gradient;
   bool has_normals = false;
-  std::string splat_key;
+  std::string splat_key, planned_key;
   std::optional<BatchTally> kept_splat;
+  std::optional<PlannedSplat> kept_planned;
 };
 
 namespace {
 
-BatchTally empty_tally(const PathTracingOptions& options) {
-  BatchTally empty(options.grid);
-  if (options.bounce_orders > 0) empty.keep_orders(options.bounce_orders);
-  return empty;
-}
-
-BatchTally splat_all(const PeriodicTile& tile, const ReliefTracer& tracer, const PathTracingOptions& options) {
-  const PathWalker walker(tile, tracer, options);
-  std::vector<BatchTally> groups(splat_groups, empty_tally(options));
-  tbb::parallel_for(std::uint32_t{0}, splat_groups, [&](std::uint32_t group) {
-    WalkSpace space;
-    const std::uint64_t rows = tile.rows();
-    for (std::uint64_t row = rows * group / splat_groups; row < rows * (group + 1) / splat_groups; ++row) {
-      walker.splat_row(static_cast<std::uint32_t>(row), space, groups[group]);
-      groups[group].close_slice();
-    }
-  });
-  BatchTally all = empty_tally(options);
-  for (const BatchTally& group : groups) all.add(group);
-  return all;
+std::string key_of(const PathTracingOptions& options) {
+  return fmt::format("{:a} {:a} {}x{} {} {}", options.incidence.theta.radians(), options.incidence.phi.radians(),
+                     options.grid.width, options.grid.height, to_string(options.material), options.bounce_orders);
 }
 
 }  // namespace
 
 const BatchTally& PathTracer::Scene::splat(const PathTracingOptions& options) {
-  const std::string key =
-      fmt::format("{:a} {:a} {}x{} {} {}", options.incidence.theta.radians(), options.incidence.phi.radians(),
-                  options.grid.width, options.grid.height, to_string(options.material), options.bounce_orders);
+  const std::string key = key_of(options);
   if (!kept_splat || key != splat_key) {
     kept_splat = splat_all(tile, height_field(), options);
     splat_key = key;
@@ -174,12 +157,21 @@ const BatchTally& PathTracer::Scene::splat(const PathTracingOptions& options) {
   return *kept_splat;
 }
 
+const PlannedSplat& PathTracer::Scene::planned(const PathTracingOptions& options) {
+  const std::string key = key_of(options);
+  if (!kept_planned || key != planned_key) {
+    kept_planned = plan_splat(tile, height_field(), options);
+    planned_key = key;
+  }
+  return *kept_planned;
+}
+
 namespace {
 
 /// One call of trace: passes until the budget or the tolerance is met.
 class Run {
 public:
-  Run(const PeriodicTile& tile, const ReliefTracer& tracer, const HeightFieldTracer* fast, const BatchTally* splat,
+  Run(const PeriodicTile& tile, const ReliefTracer& tracer, const HeightFieldTracer* fast, const PlannedSplat* splat,
       const PathTracingOptions& options, const Progress& progress)
       : tile_(tile),
         options_(options),
@@ -248,7 +240,7 @@ private:
     for (std::uint64_t first = begin; first < begin + count; first += rays_together) {
       const std::size_t here = static_cast<std::size_t>(std::min<std::uint64_t>(rays_together, begin + count - first));
       if (splat_)
-        walker_.correct(strata, first, number + first, here, space, tally);
+        walker_.correct(splat_->plan, strata, first, number + first, here, space, tally);
       else
         walker_.walk(*light_, strata, first, number + first, here, space, tally);
     }
@@ -280,7 +272,7 @@ private:
   std::optional<BeamFront> front_;
   std::optional<IncidentLight> light_;
   PathWalker walker_;
-  const BatchTally* splat_;  ///< nullptr where paths are everything
+  const PlannedSplat* splat_;  ///< nullptr where paths are everything
   std::chrono::steady_clock::time_point start_;
   std::string run_;
   TraceState state_;
@@ -290,7 +282,8 @@ private:
 // All that a state depends on, but for the budget.
 std::string run_digest(const std::string& relief, const PathTracingOptions& options, bool splat) {
   const std::string text = fmt::format(
-      "{} {:a} {:a} {} {}x{} {} batches {} bounces {} orders {} estimator {} normals {} tracer {} placement {} splat "
+      "{} {:a} {:a} {} {}x{} {} batches {} bounces {} orders {} estimator {} normals {} tracer {} placement {} planned "
+      "splat "
       "{} roulette {} seed {}",
       relief, options.incidence.theta.radians(), options.incidence.phi.radians(), options.spread_incidence_over_bin,
       options.grid.width, options.grid.height, to_string(options.material), options.batches, options.max_bounces,
@@ -325,7 +318,7 @@ Bsdf PathTracer::trace(const PathTracingOptions& options, const Progress& progre
   const bool height_field = options.tracer == TracerKind::HeightField;
   if (!height_field && !scene_->triangles) report(progress, "trace", 0.0, "building the tree of triangles");
   const HeightFieldTracer* fast = height_field ? &scene_->height_field() : nullptr;
-  Run run(scene_->tile, scene_->tracer(options.tracer), fast, splat ? &scene_->splat(options) : nullptr, options,
+  Run run(scene_->tile, scene_->tracer(options.tracer), fast, splat ? &scene_->planned(options) : nullptr, options,
           progress);
   if (!options.state.empty()) run.resume(run_digest(scene_->digest(), options, splat));
   return run.go().bsdf;
