@@ -17,7 +17,8 @@ enum class RandomPurpose : std::uint32_t {
   StageError = 7,
   InstrumentNoise = 8,
   Test = 9,
-  PatternPart = 10
+  PatternPart = 10,
+  Pilot = 11
 };
 
 /// Random numbers by counter: a pure function of (seed, purpose, index, draw). No state is shared,

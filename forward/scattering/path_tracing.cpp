@@ -19,6 +19,7 @@
 #include "forward/scattering/batch_tally.h"
 #include "forward/scattering/incident_light.h"
 #include "forward/scattering/path_walk.h"
+#include "forward/scattering/planned_splat.h"
 #include "forward/scattering/scene_tracing.h"
 #include "forward/scattering/trace_result.h"
 #include "forward/scattering/trace_state.h"
@@ -36,8 +37,6 @@ namespace {
 constexpr std::uint64_t paths_per_slice = std::uint64_t{1} << 14;
 // The first of several passes: enough paths for a first idea of the error.
 constexpr std::uint64_t paths_of_first_pass = std::uint64_t{1} << 15;
-// The splat's rows are summed in so many groups, whatever the number of threads.
-constexpr std::uint32_t splat_groups = 16;
 // A splat with a smaller share of the light has nothing to offer: nearly all of it meets the surface again (steep
 // mirrors), and the correction that makes the audit sum to 1 would divide by next to nothing.
 constexpr double least_splat_share = 0.1;
@@ -144,6 +143,8 @@ struct PathTracer::Scene {
 
   // The splat of one setting, kept for the next run of the same.
   const BatchTally& splat(const PathTracingOptions& options);
+  // The splat with its shadows, and where it has to be corrected; kept like it.
+  const PlannedSplat& planned(const PathTracingOptions& options);
 
   PeriodicTile tile;
   std::vector<std::string> warnings;  ///< of the relief itself
@@ -151,45 +152,36 @@ struct PathTracer::Scene {
   std::optional<ReliefScene> triangles;
   std::optional<double> known_gradient;
   bool has_normals = false;
-  std::string splat_key;
+  std::string splat_key, planned_key;
   std::optional<BatchTally> kept_splat;
+  std::optional<PlannedSplat> kept_planned;
 };
 
 namespace {
 
-BatchTally empty_tally(const PathTracingOptions& options) {
-  BatchTally empty(options.grid);
-  if (options.bounce_orders > 0) empty.keep_orders(options.bounce_orders);
-  return empty;
-}
-
-BatchTally splat_all(const PeriodicTile& tile, const ReliefTracer& tracer, const PathTracingOptions& options) {
-  const PathWalker walker(tile.frame(), &tile, tracer, options);
-  std::vector<BatchTally> groups(splat_groups, empty_tally(options));
-  tbb::parallel_for(std::uint32_t{0}, splat_groups, [&](std::uint32_t group) {
-    WalkSpace space;
-    const std::uint64_t rows = tile.rows();
-    for (std::uint64_t row = rows * group / splat_groups; row < rows * (group + 1) / splat_groups; ++row) {
-      walker.splat_row(static_cast<std::uint32_t>(row), space, groups[group]);
-      groups[group].close_slice();
-    }
-  });
-  BatchTally all = empty_tally(options);
-  for (const BatchTally& group : groups) all.add(group);
-  return all;
+std::string key_of(const PathTracingOptions& options) {
+  return fmt::format("{:a} {:a} {}x{} {} {}", options.incidence.theta.radians(), options.incidence.phi.radians(),
+                     options.grid.width, options.grid.height, to_string(options.material), options.bounce_orders);
 }
 
 }  // namespace
 
 const BatchTally& PathTracer::Scene::splat(const PathTracingOptions& options) {
-  const std::string key =
-      fmt::format("{:a} {:a} {}x{} {} {}", options.incidence.theta.radians(), options.incidence.phi.radians(),
-                  options.grid.width, options.grid.height, to_string(options.material), options.bounce_orders);
+  const std::string key = key_of(options);
   if (!kept_splat || key != splat_key) {
     kept_splat = splat_all(tile, height_field(), options);
     splat_key = key;
   }
   return *kept_splat;
+}
+
+const PlannedSplat& PathTracer::Scene::planned(const PathTracingOptions& options) {
+  const std::string key = key_of(options);
+  if (!kept_planned || key != planned_key) {
+    kept_planned = plan_splat(tile, height_field(), options);
+    planned_key = key;
+  }
+  return *kept_planned;
 }
 
 namespace {
@@ -198,7 +190,7 @@ namespace {
 class Run {
 public:
   Run(const SceneFrame& frame, const PeriodicTile* tile, const ReliefTracer& tracer, const HeightFieldTracer* fast,
-      const BatchTally* splat, const PathTracingOptions& options, const Progress& progress)
+      const PlannedSplat* splat, const PathTracingOptions& options, const Progress& progress)
       : frame_(frame),
         options_(options),
         progress_(progress),
@@ -266,7 +258,7 @@ private:
     for (std::uint64_t first = begin; first < begin + count; first += rays_together) {
       const std::size_t here = static_cast<std::size_t>(std::min<std::uint64_t>(rays_together, begin + count - first));
       if (splat_)
-        walker_.correct(strata, first, number + first, here, space, tally);
+        walker_.correct(splat_->plan, strata, first, number + first, here, space, tally);
       else
         walker_.walk(*light_, strata, first, number + first, here, space, tally);
     }
@@ -298,7 +290,7 @@ private:
   std::optional<BeamFront> front_;
   std::optional<IncidentLight> light_;
   PathWalker walker_;
-  const BatchTally* splat_;  ///< nullptr where paths are everything
+  const PlannedSplat* splat_;  ///< nullptr where paths are everything
   std::chrono::steady_clock::time_point start_;
   std::string run_;
   TraceState state_;
@@ -308,7 +300,8 @@ private:
 // All that a state depends on, but for the budget.
 std::string run_digest(const std::string& relief, const PathTracingOptions& options, bool splat) {
   const std::string text = fmt::format(
-      "{} {:a} {:a} {} {}x{} {} batches {} bounces {} orders {} estimator {} normals {} tracer {} placement {} splat "
+      "{} {:a} {:a} {} {}x{} {} batches {} bounces {} orders {} estimator {} normals {} tracer {} placement {} planned "
+      "splat "
       "{} roulette {} seed {}",
       relief, options.incidence.theta.radians(), options.incidence.phi.radians(), options.spread_incidence_over_bin,
       options.grid.width, options.grid.height, to_string(options.material), options.batches, options.max_bounces,
@@ -346,8 +339,9 @@ Bsdf PathTracer::trace(const PathTracingOptions& options, const Progress& progre
     scene_->tile.prepare_normals();
     scene_->has_normals = true;
   }
-  const BatchTally* splat = use_splat(options, scene_->tile, scene_->gradient()) ? &scene_->splat(options) : nullptr;
-  if (splat != nullptr && splat_share(*splat, scene_->tile) < least_splat_share) {
+  const PlannedSplat* splat =
+      use_splat(options, scene_->tile, scene_->gradient()) ? &scene_->planned(options) : nullptr;
+  if (splat != nullptr && splat_share(splat->splat, scene_->tile) < least_splat_share) {
     require(
         options.control_variate == ControlVariate::Automatic,
         "nearly no light leaves this relief after one interaction, so that the control variate has nothing to offer");

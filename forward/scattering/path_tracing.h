@@ -31,7 +31,8 @@ enum class TracerKind {
   Embree        ///< ReliefScene: the independent reference
 };
 
-/// Whether single scattering comes from a dense splat of all facets, and rays only correct it.
+/// Whether single scattering comes from a dense splat of all facets, without what a sweep and a pilot tell to be in
+/// shadow or to meet the surface again, and rays only correct it, most of them where that is likely to be wrong.
 enum class ControlVariate {
   Automatic,  ///< where it pays: s·tanθ below `control_variate_limit`
   Off,
@@ -70,7 +71,7 @@ struct PathTracingOptions {
   NormalKind normals = NormalKind::Geometric;
   TracerKind tracer = TracerKind::HeightField;
   Placement placement = Placement::Strata;
-  /// Follow one branch of the first interaction too, by roulette, as the slides do; for comparison only: 10 to 25 times
+  /// Follow one branch of every interaction alone, by roulette, as the slides do; for comparison only: 10 to 25 times
   /// the paths for the same error, at index 1.5 and steep incidence.
   bool roulette_first = false;
   ControlVariate control_variate = ControlVariate::Automatic;
@@ -84,8 +85,9 @@ struct PathTracingOptions {
 [[nodiscard]] double relative_error(const DirectionGrid& grid, const MapEstimate& map);
 
 /// The BSDF of a relief by path tracing: rays at stratified points of the macro area, in Morton order; Fresnel at every
-/// interaction; both branches of the first kept by expected value, Russian roulette between reflection and refraction
-/// at deeper ones; where it pays, single scattering by a dense splat of all facets, which rays only correct.
+/// interaction; both branches of the first two kept by expected value, Russian roulette between reflection and
+/// refraction at deeper ones; where it pays, single scattering by a dense splat of all facets, which rays only correct
+/// (see CorrectionPlan: what the splat leaves out, and where the rays go).
 ///
 /// Ends     a periodic field continues periodically; a mirrored one has its rays aimed at the original (in the
 ///          plane of the mean height) and is continued by mirrored copies; light whose first interaction is with
@@ -95,12 +97,14 @@ struct PathTracingOptions {
 ///          that rounding lets through the surface is part of `cut_off` and stands as "leaked_share" in the
 ///          provenance; "normal_fallback_share" is the share of interactions whose interpolated normal would
 ///          have sent light through the surface. With the control variate the shares are estimates whose sum is known
-///          to be 1: that is used to lower their noise, and "unadjusted_energy" tells the sum before.
+///          to be 1: that is used to lower their noise, and "unadjusted_energy" tells the sum before; "splat_left_out"
+///          tells what the splat left to the paths, "correction_density" on how much of the area they were spent.
 /// Errors   InvalidInput for incidence ≥ 90°, fewer than 2×2 samples or more than 2^28, a field with missing
 ///          samples (fill them first), more than 2^36 paths, batches that are odd or fewer than 4. DeviceError
 ///          where Embree fails. MethodError where all light meets mirrored copies. FileError for a state that is
 ///          damaged or belongs to another run. What `progress` throws.
-/// Memory   12 bytes a cell (Embree: 170; four times as much for a mirrored field), 48 bytes a bin and batch.
+/// Memory   12 bytes a cell (Embree: 170; four times as much for a mirrored field), 6 more with the control variate
+///          (and 12 for a moment), 48 bytes a bin and batch.
 /// Bits     the same for the same options and field with any number of threads (not where `seconds` ended it).
 /// Source   Frisvad 2019, slides "BRDF measurement", "Progressive updates"; the weight is corrected (the slides' one
 ///          multiplies by (ω_s·m)/cosθ_i, which belongs to points uniform on the microsurface).

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "forward/scattering/path_steps.h"
+
 namespace mezzotint {
 
 namespace {
@@ -13,39 +15,6 @@ Side other(Side side) { return side == Side::Outside ? Side::Inside : Side::Outs
 void leak(double weight, BatchTally& tally) {
   tally.add(Fate::CutOff, weight);
   tally.leaked += weight;
-}
-
-enum class Branch { Reflected, Refracted };
-
-// Light from a facet into the open, whatever stands in its way: the splat.
-void leave_unhindered(Branch branch, float way_z, std::uint32_t bin, double weight, BatchTally& tally) {
-  const bool up = branch == Branch::Reflected;
-  if (up ? way_z <= 0.0F : way_z >= 0.0F) return;
-  tally.leave(up ? Fate::Reflected : Fate::Transmitted, bin, weight, 1);
-}
-
-// The path that goes on from hit k.
-void push(const WalkSpace& space, std::size_t k, Branch branch, Side side, float weight, std::uint64_t number,
-          std::uint8_t first_branch, PathBatch& next) {
-  const HitBatch& hits = space.hits;
-  const InteractionBatch& met = space.met;
-  const std::size_t at = next.count++;
-  RayBatch& rays = next.rays;
-  rays.cell_x[at] = hits.cell_x[k];
-  rays.cell_y[at] = hits.cell_y[k];
-  rays.x[at] = hits.x[k];
-  rays.y[at] = hits.y[k];
-  rays.z[at] = hits.z[k];
-  const bool reflected = branch == Branch::Reflected;
-  rays.dx[at] = reflected ? met.reflected_x[k] : met.refracted_x[k];
-  rays.dy[at] = reflected ? met.reflected_y[k] : met.refracted_y[k];
-  rays.dz[at] = reflected ? met.reflected_z[k] : met.refracted_z[k];
-  rays.side[at] = side;
-  rays.left[at] = hits.triangle[k];
-  next.weight[at] = weight;
-  next.bin[at] = reflected ? met.reflected_bin[k] : met.refracted_bin[k];
-  next.number[at] = number;
-  next.branch[at] = first_branch;
 }
 
 // The cosine of a path's way about the normal of the facet that it leaves: the same as that of its arrival.
@@ -166,13 +135,24 @@ void PathWalker::follow(First first, WalkSpace& space, BatchTally& tally) const 
     next.count = 0;
     tracer_.closest_hits(paths.rays, paths.count, space.hits);
     space.ends.sort(paths.rays, space.hits, paths.count);
-    if (first == First::Counts || order > 1) end_all(paths, order, space, tally);
+    if (first == First::Counts || order > 1)
+      end_all(paths, order, space, tally);
+    else
+      end_left_out(paths, space, tally);
     for (const std::uint32_t k : space.ends.lost) {
       const double weight = double{paths.weight[k]};
       space.hits.end[k] == RayEnd::Sideways ? tally.add(Fate::LeftSideways, weight) : leak(weight, tally);
     }
     if (!space.ends.met.empty()) meet_all(first, paths, order, space, next, tally);
   }
+}
+
+// Of the first ones of a correction, those that the splat left out.
+void PathWalker::end_left_out(const PathBatch& paths, const WalkSpace& space, BatchTally& tally) const {
+  for (const std::uint32_t k : space.ends.reflected)
+    if (paths.in_splat[k] == 0) tally.leave(Fate::Reflected, paths.bin[k], double{paths.weight[k]}, 1);
+  for (const std::uint32_t k : space.ends.transmitted)
+    if (paths.in_splat[k] == 0) tally.leave(Fate::Transmitted, paths.bin[k], double{paths.weight[k]}, 1);
 }
 
 // All that leave. Light without a factor of its own for each path goes straight into the bins.
@@ -201,7 +181,7 @@ void PathWalker::meet_all(First first, const PathBatch& paths, std::uint32_t ord
   if (order < options_.max_bounces) interact(paths.rays, paths.count, space);
   for (const std::uint32_t k : space.ends.met) {
     // The splat took this light for gone; it is not.
-    if (first == First::InSplat && order == 1) {
+    if (first == First::InSplat && order == 1 && paths.in_splat[k] != 0) {
       leave_unhindered(paths.branch[k] == 0 ? Branch::Reflected : Branch::Refracted, paths.rays.dz[k], paths.bin[k],
                        -double{paths.weight[k]}, tally);
     }
@@ -228,6 +208,10 @@ void PathWalker::meet_again(const PathBatch& paths, std::size_t k, std::uint32_t
   if (space.met.refracts[k] == 0) {
     tally.add(Fate::Absorbed, double{weight} - double{weight * share});
     push(space, k, Branch::Reflected, side, weight * share, paths.number[k], paths.branch[k], next);
+  } else if (order == 1 && !options_.roulette_first && options_.estimator == Estimator::Flux) {
+    push(space, k, Branch::Reflected, side, weight * share, paths.number[k], paths.branch[k], next);
+    push(space, k, Branch::Refracted, other(side), weight * (1.0F - share), paths.number[k],
+         static_cast<std::uint8_t>(paths.branch[k] + 2), next);
   } else {
     const double choice =
         choices_.uniform4(paths.number[k], (std::uint32_t{paths.branch[k]} << 24) + order / 4)[order % 4];
@@ -252,130 +236,6 @@ double PathWalker::attenuation(const RayBatch& rays, std::size_t k, double end_h
   constexpr double level = 1e-6;  // a ray this level inside of the relief ends within the same cell
   const double fall = std::abs(end_height - double{rays.z[k]}), speed = std::max(level, std::abs(double{rays.dz[k]}));
   return std::exp(-absorption_per_cell_ * fall / speed);
-}
-
-// Hits, as if light had come to a point of every stratum without being shadowed; and rays from there to the light.
-void PathWalker::place_on_surface(const SampleStrata& strata, std::uint64_t first, std::size_t count,
-                                  WalkSpace& space) const {
-  constexpr std::size_t slice = 256;
-  std::array<double, slice> u{}, v{};
-  HitBatch& hits = space.hits;
-  const double columns = tile_->columns(), rows = tile_->rows();
-  for (std::size_t begin = 0; begin < count; begin += slice) {
-    const std::size_t here = std::min(slice, count - begin);
-    strata.points(first + begin, std::span(u).first(here), std::span(v).first(here));
-    for (std::size_t k = 0; k < here; ++k) {
-      const std::size_t at = begin + k;
-      const double x = u[k] * columns, y = v[k] * rows;
-      const auto column = static_cast<std::uint32_t>(x), row = static_cast<std::uint32_t>(y);
-      const auto in_x = static_cast<float>(x - column), in_y = static_cast<float>(y - row);
-      const std::uint32_t right = column + 1 == tile_->columns() ? 0 : column + 1;
-      const std::uint32_t upper = row + 1 == tile_->rows() ? 0 : row + 1;
-      const float z00 = tile_->height(column, row), z11 = tile_->height(right, upper);
-      const bool lower_half = in_x > in_y;
-      const float corner = lower_half ? tile_->height(right, row) : tile_->height(column, upper);
-      const float a = lower_half ? corner - z00 : z11 - corner, b = lower_half ? z11 - corner : corner - z00;
-      hits.end[at] = RayEnd::Surface;
-      hits.cell_x[at] = static_cast<std::int32_t>(column);
-      hits.cell_y[at] = static_cast<std::int32_t>(row);
-      hits.x[at] = in_x;
-      hits.y[at] = in_y;
-      hits.z[at] = z00 + (a * in_x + b * in_y);
-      hits.slope_x[at] = a;
-      hits.slope_y[at] = b / static_cast<float>(tile_->cell_y());
-      hits.triangle[at] = lower_half ? 0 : 1;
-    }
-  }
-}
-
-void PathWalker::correct(const SampleStrata& strata, std::uint64_t first, std::uint64_t first_index, std::size_t count,
-                         WalkSpace& space, BatchTally& tally) const {
-  place_on_surface(strata, first, count, space);
-  shine(count, space);
-  interact_geometric(options_.material, options_.grid, space.aimed.rays, space.hits, count, space.met);
-  find_lit(count, space);
-  for (std::size_t k = 0; k < count; ++k) {
-    if (space.start_weight[k] == 0.0F || space.lit[k] != 0) continue;
-    splat_one(space, k, -space.start_weight[k], tally);
-    space.start_weight[k] = 0.0F;
-  }
-  double absorbed_in_splat = 0.0;
-  for (std::size_t k = 0; k < count; ++k) {
-    if (space.met.refracts[k] == 0)
-      absorbed_in_splat += double{space.start_weight[k] * (1.0F - space.met.reflectance[k])};
-  }
-  split(space.aimed.rays, count, first_index, space, tally);
-  tally.add(Fate::Absorbed, -absorbed_in_splat);
-  follow(First::InSplat, space, tally);
-}
-
-// Rays from the points that face the light towards it.
-void PathWalker::find_lit(std::size_t count, WalkSpace& space) const {
-  PathBatch& next = space.paths[0];
-  next.count = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    space.lit[k] = 0;
-    if (space.start_weight[k] == 0.0F) continue;
-    push(space, k, Branch::Reflected, Side::Outside, 1.0F, k, 0, next);
-    const std::size_t at = next.count - 1;
-    next.rays.dx[at] = static_cast<float>(to_light_.x());
-    next.rays.dy[at] = static_cast<float>(to_light_.y());
-    next.rays.dz[at] = static_cast<float>(to_light_.z());
-  }
-  HitBatch& shadows = space.shadows;
-  tracer_.closest_hits(next.rays, next.count, shadows);
-  for (std::size_t k = 0; k < next.count; ++k) {
-    if (shadows.end[k] == RayEnd::Above) space.lit[next.number[k]] = 1;
-  }
-}
-
-// The light of one interaction as the splat sees it; with a negative weight, to take it back.
-void PathWalker::splat_one(const WalkSpace& space, std::size_t k, float weight, BatchTally& tally) const {
-  const InteractionBatch& met = space.met;
-  const float share = met.reflectance[k];
-  if (share > 0.0F)
-    leave_unhindered(Branch::Reflected, met.reflected_z[k], met.reflected_bin[k], double{weight * share}, tally);
-  const double rest = double{weight * (1.0F - share)};
-  if (met.refracts[k] == 0) return tally.add(Fate::Absorbed, rest);
-  leave_unhindered(Branch::Refracted, met.refracted_z[k], met.refracted_bin[k], rest, tally);
-}
-
-void PathWalker::splat_row(std::uint32_t row, WalkSpace& space, BatchTally& tally) const {
-  const std::uint32_t upper = row + 1 == tile_->rows() ? 0 : row + 1;
-  const auto per_y = static_cast<float>(1.0 / tile_->cell_y());
-  for (std::uint32_t begin = 0; begin < tile_->columns(); begin += rays_together / 2) {
-    const std::uint32_t end = std::min<std::uint32_t>(tile_->columns(), begin + rays_together / 2);
-    std::size_t count = 0;
-    for (std::uint32_t column = begin; column < end; ++column) {
-      const std::uint32_t right = column + 1 == tile_->columns() ? 0 : column + 1;
-      const float z00 = tile_->height(column, row), z10 = tile_->height(right, row);
-      const float z01 = tile_->height(column, upper), z11 = tile_->height(right, upper);
-      space.hits.slope_x[count] = z10 - z00;
-      space.hits.slope_y[count++] = (z11 - z10) * per_y;
-      space.hits.slope_x[count] = z11 - z01;
-      space.hits.slope_y[count++] = (z01 - z00) * per_y;
-    }
-    shine(count, space);
-    interact_geometric(options_.material, options_.grid, space.aimed.rays, space.hits, count, space.met);
-    for (std::size_t k = 0; k < count; ++k) {
-      if (space.start_weight[k] > 0.0F) splat_one(space, k, space.start_weight[k], tally);
-    }
-  }
-}
-
-// The beam at the facets of `space.hits`, and the light that each catches for each light on its macro area.
-void PathWalker::shine(std::size_t count, WalkSpace& space) const {
-  RayBatch& rays = space.aimed.rays;
-  const HitBatch& hits = space.hits;
-  const auto lx = static_cast<float>(to_light_.x()), ly = static_cast<float>(to_light_.y());
-  const auto lz = static_cast<float>(to_light_.z());
-  for (std::size_t k = 0; k < count; ++k) {
-    rays.dx[k] = -lx;
-    rays.dy[k] = -ly;
-    rays.dz[k] = -lz;
-    rays.side[k] = Side::Outside;
-    space.start_weight[k] = std::max(0.0F, (lz - hits.slope_x[k] * lx - hits.slope_y[k] * ly) / lz);
-  }
 }
 
 }  // namespace mezzotint

@@ -69,6 +69,18 @@ void SampleStrata::points(std::uint64_t first, std::span<double> u, std::span<do
   }
 }
 
+void SampleStrata::points_on_line(std::uint64_t first, std::span<double> u, std::span<double> v) const {
+  const double width = width_ * height_;
+  for (std::size_t k = 0; k < u.size(); ++k) {
+    const std::uint64_t index = first + k;
+    const std::uint32_t key_u = key_u_ + static_cast<std::uint32_t>(index >> 32) * 0x9e3779b9U;
+    const std::uint32_t a = hash(static_cast<std::uint32_t>(index) ^ key_u), b = hash(a ^ key_v_);
+    const double jitter = placement_ == Placement::Lattice ? shift_u_ : a * unit;
+    u[k] = placement_ == Placement::Random ? jitter : (static_cast<double>(index) + jitter) * width;
+    v[k] = b * unit;
+  }
+}
+
 void SampleStrata::fill_block(std::uint64_t first, std::span<double> u, std::span<double> v) const {
   const std::uint64_t base = first / block;
   const auto base_u = static_cast<double>(even_bits(base) * 8), base_v = static_cast<double>(even_bits(base >> 1) * 8);

@@ -24,6 +24,8 @@ public:
   SampleStrata(std::uint32_t bits, Placement placement, std::uint64_t seed, std::uint32_t pass, std::uint32_t batch);
   /// Fills u and v with the points of strata first, first + 1, …
   void points(std::uint64_t first, std::span<double> u, std::span<double> v) const;
+  /// The same number of strata along u alone; v is anywhere.
+  void points_on_line(std::uint64_t first, std::span<double> u, std::span<double> v) const;
 
 private:
   void fill_block(std::uint64_t first, std::span<double> u, std::span<double> v) const;

@@ -85,15 +85,19 @@ public:
   [[nodiscard]] bool corrects_a_splat() const { return splat_ != nullptr; }
   [[nodiscard]] std::uint32_t batches() const { return static_cast<std::uint32_t>(state_.tallies.size()); }
 
-  // What one path more would add to a bin of a map (0 reflection, 1 transmission), by the mean weight of all.
+  // What one path more would add to a bin of a map (0 reflection, 1 transmission), by the mean weight of all; of the
+  // splat's where no path has corrected anything.
   [[nodiscard]] double one_arrival(std::size_t map, double bins) const {
-    double weight = splat_ == nullptr ? 0.0 : splat_->arrived_weight[map];
-    double all = splat_ == nullptr ? 0.0 : splat_->arrivals[map], traced = 0.0;
+    double weight = 0.0, traced = 0.0;
     for (const BatchTally& tally : state_.tallies) {
       weight += tally.arrived_weight[map];
       traced += tally.arrivals[map];
     }
-    all += traced;
+    double all = traced;
+    if (traced == 0.0 && splat_ != nullptr) {
+      weight = splat_->arrived_weight[map];
+      all = splat_->arrivals[map];
+    }
     const double rays = static_cast<double>(state_.tallies.size()) / per_ray_;
     return all > 0.0 ? weight / all / rays * std::sqrt(std::min(1.0, (traced + 1.0) / bins)) : 0.0;
   }
@@ -173,7 +177,8 @@ std::string convergence_text(const TraceState& state) {
   return text;
 }
 
-Provenance provenance(const PathTracingOptions& options, const TraceState& state, const Shares& shares, bool splat) {
+Provenance provenance(const PathTracingOptions& options, const TraceState& state, const Shares& shares,
+                      const CorrectionPlan* plan) {
   std::uint64_t interactions = 0, fallbacks = 0;
   double leaked = 0.0, excess = 0.0;
   for (const BatchTally& tally : state.tallies) {
@@ -190,7 +195,7 @@ Provenance provenance(const PathTracingOptions& options, const TraceState& state
                         {"tracer", options.tracer == TracerKind::Embree ? "embree" : "height field"},
                         {"estimator", options.estimator == Estimator::Flux ? "flux" : "slides"},
                         {"placement", name_of(options.placement)},
-                        {"control_variate", splat ? "dense slope splat" : "none"},
+                        {"control_variate", plan != nullptr ? "slope splat" : "none"},
                         {"material", to_string(options.material)},
                         {"normals", options.normals == NormalKind::Geometric ? "geometric" : "interpolated"},
                         {"samples", std::to_string(samples)},
@@ -202,15 +207,21 @@ Provenance provenance(const PathTracingOptions& options, const TraceState& state
                         {"interactions_per_path", fmt::format("{:.6g}", static_cast<double>(interactions) * per_path)},
                         {"normal_fallback_share", fmt::format("{:.6g}", fallback_share)},
                         {"leaked_share", fmt::format("{:.6g}", leaked * per_path)}};
-  if (splat) entries["unadjusted_energy"] = fmt::format("{:.8g}", 1.0 + excess);
+  if (plan != nullptr) {
+    entries["unadjusted_energy"] = fmt::format("{:.8g}", 1.0 + excess);
+    entries["splat_left_out"] = fmt::format("shadowed {:.4g}, meeting the surface again {:.4g} of the cells",
+                                            plan->dark_share(), plan->meeting_share());
+    entries["correction_density"] =
+        plan->quiet() ? "even" : fmt::format("learned; like an even one on {:.4g} of the area", plan->density_share());
+  }
   return entries;
 }
 
 }  // namespace
 
-TraceResult summarise(const PathTracingOptions& options, const TraceState& state, const BatchTally* splat,
+TraceResult summarise(const PathTracingOptions& options, const TraceState& state, const PlannedSplat* splat,
                       double facets) {
-  const Shares shares(state, splat, facets);
+  const Shares shares(state, splat == nullptr ? nullptr : &splat->splat, facets);
   TraceResult result;
   Bsdf& bsdf = result.bsdf;
   bsdf.incidence = options.incidence;
@@ -232,7 +243,7 @@ TraceResult summarise(const PathTracingOptions& options, const TraceState& state
     bsdf.reflection_orders.push_back(estimate_map(
         shares, 0, scale, [order](const BatchTally& t) -> const DirectionMap& { return t.orders[order]; }));
   }
-  bsdf.provenance = provenance(options, state, shares, splat != nullptr);
+  bsdf.provenance = provenance(options, state, shares, splat == nullptr ? nullptr : &splat->plan);
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include "forward/optics/bsdf.h"
 #include "forward/scattering/path_tracing.h"
+#include "forward/scattering/planned_splat.h"
 #include "forward/scattering/trace_state.h"
 
 namespace mezzotint {
@@ -11,10 +12,10 @@ struct TraceResult {
 };
 
 /// What the tallies of all batches amount to.
-/// @param splat   the dense splat of `facets` facets that the paths only correct; nullptr where they are everything.
+/// @param splat   the splat of `facets` facets that the paths only correct; nullptr where they are everything.
 /// @throws MethodError where all light met mirrored copies.
-[[nodiscard]] TraceResult summarise(const PathTracingOptions& options, const TraceState& state, const BatchTally* splat,
-                                    double facets);
+[[nodiscard]] TraceResult summarise(const PathTracingOptions& options, const TraceState& state,
+                                    const PlannedSplat* splat, double facets);
 
 /// What a splat alone amounts to, divided by its total.
 [[nodiscard]] Bsdf splat_result(const PathTracingOptions& options, const BatchTally& splat, double facets);
