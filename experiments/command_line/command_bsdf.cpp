@@ -259,7 +259,7 @@ std::string text_of(const std::vector<Bsdf>& channels, const std::string& output
 }
 
 // What is wrong with which channel.
-std::vector<std::string> warnings_of(const std::vector<Bsdf>& channels) {
+std::vector<std::string> warnings_by_channel(const std::vector<Bsdf>& channels) {
   std::vector<std::string> sentences;
   for (std::size_t c = 0; c < channels.size(); ++c) {
     const std::string name = channel_name(c, channels.size());
@@ -274,7 +274,7 @@ ExitStatus write_and_tell(const BsdfArguments& arguments, const CommandContext& 
   channels.size() == 1 ? write_exr(channels[0], arguments.output) : write_channels_exr(channels, arguments.output);
   write_page(arguments, channels[0], relative_error(channels[0].grid, channels[0].reflection));
   context.print(json_of(channels, arguments.output), text_of(channels, arguments.output));
-  context.warn(warnings_of(channels));
+  context.warn(warnings_by_channel(channels));
   const bool fell_short =
       has_tolerance(arguments) && std::any_of(channels.begin(), channels.end(), [&](const Bsdf& bsdf) {
         return relative_error(bsdf.grid, bsdf.reflection) > tolerance_of(arguments);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr unsigned white = 65535;
 
-OIIO::ImageSpec specification(const Grid& grid, OIIO::TypeDesc type) {
+OIIO::ImageSpec specification(const Grid& grid, const OIIO::TypeDesc& type) {
   OIIO::ImageSpec spec(static_cast<int>(grid.columns), static_cast<int>(grid.rows), 1, type);
   spec.channelnames = {"Y"};
   spec.attribute("DateTime", "");  // otherwise the time of writing: the same relief shall give the same bytes
@@ -28,7 +28,8 @@ OIIO::ImageSpec specification(const Grid& grid, OIIO::TypeDesc type) {
 // A line at a time, the top of the picture first, into memory: written straight to a full disk, OpenEXR swallows the
 // error when it closes the file, and calls half a picture a whole one.
 template <class Pixel, class Value>
-std::vector<unsigned char> encode(const char* format, const Grid& grid, OIIO::TypeDesc type, const Value& value) {
+std::vector<unsigned char> encode(const char* format, const Grid& grid, const OIIO::TypeDesc& type,
+                                  const Value& value) {
   const std::unique_ptr<OIIO::ImageOutput> file = OIIO::ImageOutput::create(format);
   if (!file) throw DeviceError(fmt::format("cannot write {}: OpenImageIO does not know it here", format));
   const auto check = [&](bool good) {
