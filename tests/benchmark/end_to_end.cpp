@@ -43,8 +43,8 @@ Times walk_all(const PeriodicTile& tile, const HeightFieldTracer& tracer, const 
                std::uint32_t bits) {
   const TimedTracer timed(tracer);
   const BeamFront front(tracer.pyramid(), -to_direction(options.incidence), tile.mean());
-  const IncidentLight light(tile, options, &front);
-  const PathWalker walker(tile, timed, options);
+  const IncidentLight light(tile.frame(), options, &front);
+  const PathWalker walker(tile.frame(), &tile, timed, options);
   std::vector<BatchTally> tallies(options.batches, BatchTally(options.grid));
   WalkSpace space;
   constexpr std::uint64_t slice = std::uint64_t{1} << 14;

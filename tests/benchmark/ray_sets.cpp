@@ -16,7 +16,7 @@ RaySet incident_rays(const PeriodicTile& tile, const HeightFieldTracer& tracer, 
   options.incidence = {Angle::from_degrees(theta_deg), Angle::from_degrees(30.0)};
   std::optional<BeamFront> front;
   if (start == Start::Front) front.emplace(tracer.pyramid(), -to_direction(options.incidence), tile.mean());
-  const IncidentLight light(tile, options, front ? &*front : nullptr);
+  const IncidentLight light(tile.frame(), options, front ? &*front : nullptr);
   const SampleStrata strata(bits, Placement::Strata, 1, 0, 0);
   RaySet set{fmt::format("{} {:.0f}°", start == Start::Front ? "incident" : "from top", theta_deg), {}};
   AimedRays aimed(rays_per_call);
