@@ -16,6 +16,9 @@ constexpr double least_density = 0.05;
 constexpr double worth_of_transmission = 0.1;
 // A class counts as if this part of so many more points had been seen to meet the surface.
 constexpr double unseen = 1e-3, prior_points = 4.0;
+// The same for judgements by how near the next cell is that was judged otherwise: two cells away, one, beside it. A
+// border runs through the cells beside it, so that a part of them is judged wrongly; few pilots may not tell.
+constexpr std::array<double, 3> expected_wrong = {unseen, 0.01, 0.25};
 // No judgement is doubted less: of a class with so few mistakes the pilot sees none or one.
 constexpr float least_doubt = 5e-4F;
 // Chances of meeting the surface again that are near enough to certain.
@@ -174,9 +177,10 @@ void CorrectionPlan::learn_doubt(const std::vector<PilotOutcome>& outcomes) {
     wrongly_lit[lit_class_[cell]].add(wrong * wrong);
     if (one.lit && one.way_up > 0.0F) again[meet_class_[cell]].add(one.reflected_met ? 1.0 : 0.0);
   }
-  for (std::size_t k = 0; k < lit_classes; ++k) wrongly_lit_[k] = static_cast<float>(wrongly_lit[k].drawn_to(unseen));
+  for (std::size_t k = 0; k < lit_classes; ++k) wrongly_lit_[k] = static_cast<float>(wrongly_lit[k].drawn_to(expected_wrong[k % 3]));
   for (std::size_t k = 0; k < meet_classes; ++k) {
-    meets_again_[k] = static_cast<float>(again[k].drawn_to(k < 3 ? unseen : 1.0 - unseen));
+    const double wrong = expected_wrong[k % 3];
+    meets_again_[k] = static_cast<float>(again[k].drawn_to(k < 3 ? wrong : 1.0 - wrong));
     wrong_way_[k] = std::max(least_doubt, k < 3 ? meets_again_[k] : 1.0F - meets_again_[k]);
   }
 }

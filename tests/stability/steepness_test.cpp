@@ -113,7 +113,7 @@ TEST(SteepRelief, CanSendNoLightStraightOut) {
   EXPECT_EQ(slopes.energy.reflected.value, 0.0);
   EXPECT_EQ(slopes.energy.cut_off.value, 1.0);
   const std::string told = choice.forecasts.front().reason;
-  EXPECT_NE(told.find("no facet sends light straight out"), std::string::npos);
+  EXPECT_NE(told.find("no facet reflects light upward by itself"), std::string::npos);
   test::record({theme, "`slopes` and the control variate", "a mirror of 45° pyramids, one sample each, at 30°",
                 fmt::format("No facet sends light straight out: the splat is empty, and there is nothing to correct. "
                             "The paths alone give an albedo of {:.5f}.",
