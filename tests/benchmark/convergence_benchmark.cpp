@@ -39,7 +39,7 @@ namespace {
 using namespace mezzotint;
 
 constexpr double goal = 0.01;
-constexpr std::uint32_t slides_runs = 8;
+constexpr std::uint32_t slides_runs = 3;
 
 struct Settings {
   std::size_t cells = 1024, bins = 64;

@@ -47,6 +47,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"bsdf relief.obj -o lobe.exr --incidence 20,0", "no such file"},
         Refusal{"bsdf relief.gwy -o lobe.png --incidence 20,0", "written as .exr"},
         Refusal{"correct relief.gwy -o corrected.gwy --outliers nan", "--outliers"},
+        Refusal{"correct relief.gwy -o corrected.gwy --crop 1,2,3", "X,Y,W,H"},
+        Refusal{"correct relief.gwy -o corrected.gwy --level poly:x", "poly:N"},
         Refusal{"run small.toml --set search.draws=64 --set print.patch_pixels=1024 --set print.subsamples=16", "GiB"},
         Refusal{"synthesize pattern.toml -o relief.stl", ".exr or .obj"},
         Refusal{"print job.uvj -o printed.gwy --device dlpc900", "--device"}));

@@ -30,6 +30,18 @@ TEST(Commands, LeadFromAPatternToItsLobe) {
   EXPECT_EQ(corrected.at("missing_after"), 0);
   EXPECT_EQ(json("correct relief.gwy -o part.gwy --crop 8,8,32,16").at("written"), "part.gwy");
   EXPECT_EQ(json("info part.gwy").at("rows"), 16);
+  // Steps are done in the order in which they are given: a quarter turn exchanges the sides of what was cropped.
+  EXPECT_EQ(json("correct relief.gwy -o turned.gwy --crop 8,8,32,16 --turn 90").at("steps").size(), 2U);
+  EXPECT_EQ(json("info turned.gwy").at("rows"), 32);
+  EXPECT_EQ(json("correct relief.gwy -o cropped.gwy --turn 90 --crop 8,8,32,16").at("warnings").size(), 0U);
+  EXPECT_EQ(json("info cropped.gwy").at("rows"), 16);
+
+  // Along x at the height of a crest of the other wave: 3 µm · sin(2πx/32 µm), Pq = 3/√2, but for the samples' 16 a
+  // wave, and its line.
+  const auto profile = json("roughness relief.gwy --level none --profile 0,16,124,16");
+  EXPECT_NEAR(profile.at("Pq").at("value"), 3.0 / std::sqrt(2.0), 0.1);
+  // As long as the filter's cut-off, half of a wave is left: 0.75 µm of 1.5.
+  EXPECT_NEAR(json("roughness tile.gwy --level none --l-filter 28.6216701").at("Sq").at("value"), 0.75, 1e-3);
 
   EXPECT_EQ(json("mesh relief.gwy -o relief.obj").at("vertices"), 64 * 64);
   EXPECT_NE(here.read("relief.mtl").find("Ni 1.5"), std::string::npos);
