@@ -127,7 +127,8 @@ TEST(GrazingLight, TakesTheAdvantageFromTheControlVariate) {
               5.0 * std::hypot(splat.energy.reflected.standard_error, beam.energy.reflected.standard_error));
   EXPECT_EQ(automatic.provenance.at("control_variate"), "none");
   test::record({theme, "control variate, forced on", "s = 2 at 89° (s·tanθ = 115, limit 20)",
-                fmt::format("Most points lie in shadow, and few judgements hold: the standard error is {:.1f} times that of a beam with as many "
+                fmt::format("Most points lie in shadow, and few judgements hold: the standard error is {:.1f} times "
+                            "that of a beam with as many "
                             "paths, for a sweep and a pilot more. The result stays unbiased.",
                             ratio),
                 "The standard error says so. Nothing switches it on there unless a caller of the library forces it: "

@@ -24,7 +24,9 @@ HeightField scaled(const HeightField& relief, double factor, double offset_um = 
 
 TEST(Units, ChangeNothingFromNanometresToMetres) {
   const HeightField relief = test::random_relief(64, 0.5);
-  const PathTracingOptions options = light_at(60.0, Dielectric{1.5}, 14);
+  PathTracingOptions options = light_at(60.0, Dielectric{1.5}, 14);
+  // The beam alone: where the splat is corrected depends on judgements that the last bit of a height may turn.
+  options.control_variate = ControlVariate::Off;
   const Bsdf micrometres = trace_bsdf(relief, options);
   double largest = 0.0;
   for (const double factor : {1e-3, 1e6}) {
