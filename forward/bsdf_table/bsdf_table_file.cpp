@@ -12,9 +12,9 @@
 #include <fmt/format.h>
 
 #include "forward/base/error.h"
-#include "forward/base/file_output.h"
 #include "forward/bsdf_table/bsdf_table_header.h"
 #include "forward/optics/exr_input.h"
+#include "forward/optics/exr_output.h"
 
 namespace mezzotint {
 
@@ -179,15 +179,7 @@ private:
 void write_bsdf_table(const BsdfTable& table, const fs::path& path) {
   require_valid(table);
   const Picture picture = picture_of(table);
-  const OIIO::ImageSpec spec = spec_of(picture, to_header(table));
-  write_aside(path, [&](const fs::path& temporary) {
-    const std::unique_ptr<OIIO::ImageOutput> file = OIIO::ImageOutput::create("exr");
-    if (!file) throw DeviceError("cannot write " + path.string() + ": OpenImageIO has no OpenEXR here");
-    if (!file->open(temporary.string(), spec) || !file->write_image(OIIO::TypeDesc::FLOAT, picture.pixels.data()) ||
-        !file->close()) {
-      throw DeviceError("cannot write " + path.string() + ": " + file->geterror());
-    }
-  });
+  write_exr_picture(spec_of(picture, to_header(table)), picture.pixels, path);
 }
 
 bool is_bsdf_table(const fs::path& path) {

@@ -13,8 +13,8 @@
 #include <fmt/format.h>
 
 #include "forward/base/error.h"
-#include "forward/base/file_output.h"
 #include "forward/optics/exr_input.h"
+#include "forward/optics/exr_output.h"
 
 namespace mezzotint {
 
@@ -130,17 +130,7 @@ std::vector<float> interleaved(std::span<const Bsdf> channels) {
 
 void write_all(std::span<const Bsdf> channels, const fs::path& path) {
   for (const Bsdf& bsdf : channels) require_writable(bsdf);
-  const OIIO::ImageSpec spec = spec_of(channels);
-  const std::vector<float> pixels = interleaved(channels);
-  write_aside(path, [&](const fs::path& temporary) {
-    // By the format's name: the ending of the path is the caller's affair.
-    const std::unique_ptr<OIIO::ImageOutput> file = OIIO::ImageOutput::create("exr");
-    if (!file) throw DeviceError("cannot write " + path.string() + ": OpenImageIO has no OpenEXR here");
-    if (!file->open(temporary.string(), spec) || !file->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) ||
-        !file->close()) {
-      throw DeviceError("cannot write " + path.string() + ": " + file->geterror());
-    }
-  });
+  write_exr_picture(spec_of(channels), interleaved(channels), path);
 }
 
 double number_at(const OIIO::ImageSpec& spec, const std::string& name, const fs::path& path) {
