@@ -52,9 +52,9 @@ struct Choice {
 ///           no splat, and are always traced. `Moments` is never taken where there is a
 ///           relief: its lobe costs more than the splat (60 reliefs of 256²: 3 ms and up, against 1.5 to 2), which is
 ///           nearer. The splat is kept for `Paths`, which corrects it.
-/// Measured  60 scenes drawn at random (tests/benchmark/auto_study.cpp: eight families of reliefs, s = 0.03 … 1, 0 …
+/// Measured  60 scenes drawn at random (tests/benchmark/auto_study.cpp: nine families of reliefs, s = 0.03 … 1, 0 …
 ///           85°, six materials) at 5 % and 1 %: true error within the tolerance in all; time over that of the cheapest
-///           rung that met it 1.04 and 1.03 in the median, 3.7 and 5.0 at worst, where both took milliseconds.
+///           rung that met it 1.18 and 1.12 in the median, 5.6 and 6.0 at worst, where both took milliseconds.
 /// Result    provenance "model" (the rung), "choice" (why, in words), "predicted_error", and "warnings".
 /// @throws   what PathTracer::trace throws.
 [[nodiscard]] Bsdf simulate_auto(const HeightField& field, PathTracer& tracer, const LadderOptions& options,
