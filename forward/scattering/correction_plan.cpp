@@ -177,7 +177,8 @@ void CorrectionPlan::learn_doubt(const std::vector<PilotOutcome>& outcomes) {
     wrongly_lit[lit_class_[cell]].add(wrong * wrong);
     if (one.lit && one.way_up > 0.0F) again[meet_class_[cell]].add(one.reflected_met ? 1.0 : 0.0);
   }
-  for (std::size_t k = 0; k < lit_classes; ++k) wrongly_lit_[k] = static_cast<float>(wrongly_lit[k].drawn_to(expected_wrong[k % 3]));
+  for (std::size_t k = 0; k < lit_classes; ++k)
+    wrongly_lit_[k] = static_cast<float>(wrongly_lit[k].drawn_to(expected_wrong[k % 3]));
   for (std::size_t k = 0; k < meet_classes; ++k) {
     const double wrong = expected_wrong[k % 3];
     meets_again_[k] = static_cast<float>(again[k].drawn_to(k < 3 ? wrong : 1.0 - wrong));

@@ -41,9 +41,9 @@ enum class ControlVariate {
 };
 
 /// Up to this product of the RMS gradient s and tanθ the corrected splat is known to be the better estimator; above it
-/// a beam is aimed from above. Measured, squared error times time of the splat ÷ that of the beam (index 1.5, 2^17 paths,
-/// 512² cells; in brackets 128²): 0.05 (0.22) at s·tanθ = 4.5 (s = 0.8, 80°), 0.05 (0.21) at 9 (0.8, 85°), 0.51 (0.86)
-/// at 11 (2, 80°), 0.64 (1.13) at 23 (2, 85°), 0.03 (0.61) at 46 (0.8, 89°), 0.19 (1.17) at 115 (2, 89°).
+/// a beam is aimed from above. Measured, squared error times time of the splat ÷ that of the beam (index 1.5, 2^17
+/// paths, 512² cells; in brackets 128²): 0.05 (0.22) at s·tanθ = 4.5 (s = 0.8, 80°), 0.05 (0.21) at 9 (0.8, 85°), 0.51
+/// (0.86) at 11 (2, 80°), 0.64 (1.13) at 23 (2, 85°), 0.03 (0.61) at 46 (0.8, 89°), 0.19 (1.17) at 115 (2, 89°).
 inline constexpr double control_variate_limit = 20.0;
 
 struct PathTracingOptions {
