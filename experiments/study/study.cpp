@@ -180,7 +180,11 @@ private:
     if (!splat_is_possible()) return;
     PathTracingOptions other = base(1);
     other.grid = {8, 8};
-    for (const auto& [step, tracer] : tracers_) (void)tracer->splat(other);
+    other.samples = 64;
+    for (const auto& [step, tracer] : tracers_) {
+      (void)tracer->splat(other);
+      (void)tracer->trace(other);  // and its plan
+    }
   }
 
   void measure(StudyPoint& point, const std::function<Bsdf(std::uint64_t)>& run) {

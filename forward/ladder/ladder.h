@@ -54,7 +54,7 @@ struct Choice {
 ///           nearer. The splat is kept for `Paths`, which corrects it.
 /// Measured  60 scenes drawn at random (tests/benchmark/auto_study.cpp: nine families of reliefs, s = 0.03 … 1, 0 …
 ///           85°, six materials) at 5 % and 1 %: true error within the tolerance in all; time over that of the cheapest
-///           rung that met it 1.18 and 1.12 in the median, 5.6 and 6.0 at worst, where both took milliseconds.
+///           rung that met it 1.08 and 1.06 in the median, 8.5 and 8.8 at worst, where both took milliseconds.
 /// Result    provenance "model" (the rung), "choice" (why, in words), "predicted_error", and "warnings".
 /// @throws   what PathTracer::trace throws.
 [[nodiscard]] Bsdf simulate_auto(const HeightField& field, PathTracer& tracer, const LadderOptions& options,
