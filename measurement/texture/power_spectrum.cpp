@@ -75,7 +75,7 @@ RadialSpectrum radial_spectrum(const PowerSpectrum& spectrum) {
   for (std::size_t row = 0; row < spectrum.rows; ++row)
     for (std::size_t column = 0; column < spectrum.columns; ++column) {
       const double f = std::hypot(spectrum.frequency_x_per_um(column), spectrum.frequency_y_per_um(row));
-      const auto ring = static_cast<std::size_t>(f / step + 0.5);
+      const auto ring = static_cast<std::size_t>(std::lround(f / step));
       if (ring == 0) continue;
       if (ring >= rings.size() + 1) rings.resize(ring);
       const double density = spectrum.density_um4[row * spectrum.columns + column];

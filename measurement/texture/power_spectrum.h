@@ -21,11 +21,12 @@ struct PowerSpectrum {
   std::vector<double> density_um4;
 
   [[nodiscard]] double frequency_x_per_um(std::size_t column) const {
-    return (static_cast<double>(column) - static_cast<double>(columns / 2)) /
-           (static_cast<double>(columns) * pitch_x.um());
+    const std::size_t middle = columns / 2;
+    return (static_cast<double>(column) - static_cast<double>(middle)) / (static_cast<double>(columns) * pitch_x.um());
   }
   [[nodiscard]] double frequency_y_per_um(std::size_t row) const {
-    return (static_cast<double>(row) - static_cast<double>(rows / 2)) / (static_cast<double>(rows) * pitch_y.um());
+    const std::size_t middle = rows / 2;
+    return (static_cast<double>(row) - static_cast<double>(middle)) / (static_cast<double>(rows) * pitch_y.um());
   }
 };
 

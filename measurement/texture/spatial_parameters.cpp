@@ -86,8 +86,9 @@ struct Jackknife {
 
 Jackknife jackknife(const HeightField& field, double sal_um) {
   const Grid& grid = field.grid();
-  const double side_um = std::min(static_cast<double>(grid.columns / blocks_a_side) * grid.pitch_x.um(),
-                                  static_cast<double>(grid.rows / blocks_a_side) * grid.pitch_y.um());
+  const std::size_t columns = grid.columns / blocks_a_side, rows = grid.rows / blocks_a_side;
+  const double side_um =
+      std::min(static_cast<double>(columns) * grid.pitch_x.um(), static_cast<double>(rows) * grid.pitch_y.um());
   if (!(sal_um < 0.25 * side_um)) return {};
   std::array<Autocorrelation, block_count> blocks;
   std::array<double, block_count> samples{};
