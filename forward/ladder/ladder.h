@@ -51,7 +51,8 @@ struct Choice {
 ///           others a pilot of paths measures what the splat leaves out. A mirrored patch and an absorbing medium have
 ///           no splat, and are always traced. `Moments` is never taken where there is a
 ///           relief: its lobe costs more than the splat (60 reliefs of 256²: 3 ms and up, against 1.5 to 2), which is
-///           nearer. The splat is kept for `Paths`, which corrects it.
+///           nearer. `Paths` corrects a splat of its own, which leaves out shadows and meetings; the pilot has made its
+///           plan.
 /// Measured  60 scenes drawn at random (tests/benchmark/auto_study.cpp: nine families of reliefs, s = 0.03 … 1, 0 …
 ///           85°, six materials) at 5 % and 1 %: true error within the tolerance in all; time over that of the cheapest
 ///           rung that met it 1.08 and 1.06 in the median, 8.5 and 8.8 at worst, where both took milliseconds.

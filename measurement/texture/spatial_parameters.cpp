@@ -97,11 +97,9 @@ Jackknife jackknife(const HeightField& field, double sal_um) {
     const HeightField part = block_of(field, block);
     const auto measured = part.grid().size() - part.missing_count();
     if (2 * measured < part.grid().size()) continue;
-    try {
-      blocks[block] = autocorrelation(part);
-    } catch (const InvalidInput&) {
-      continue;  // a flat block has nothing to say
-    }
+    const HeightRange range = height_range(part);
+    if (range.highest == range.lowest) continue;  // a flat block has nothing to say
+    blocks[block] = autocorrelation(part);
     samples[block] = static_cast<double>(measured);
     lag_x = std::min(lag_x, blocks[block].lag_x);
     lag_y = std::min(lag_y, blocks[block].lag_y);
