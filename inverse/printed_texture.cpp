@@ -34,6 +34,12 @@ SlopeCovariance scaled(const SlopeCovariance& covariance, double factor) {
   return {covariance.xx * factor, covariance.yy * factor, covariance.xy * factor};
 }
 
+// Before anything of its size is allocated.
+const PatchOptions& checked(const PatchOptions& patch) {
+  require(patch.pixels >= 16 && patch.pixels <= 4096, "a patch has 16 to 4096 pixels a side");
+  return patch;
+}
+
 }  // namespace
 
 HeightField pixel_heights(const PatternInstance& instance, const PrinterProfile& printer, std::size_t pixels) {
@@ -46,9 +52,10 @@ HeightField pixel_heights(const PatternInstance& instance, const PrinterProfile&
 
 PrintedTexture::PrintedTexture(const PrinterProfile& printer, const PatchOptions& patch,
                                std::vector<std::uint64_t> seeds)
-    : printer_(printer), patch_(patch), seeds_(std::move(seeds)) {
-  require_valid(printer_);
-  require(patch.pixels >= 16 && patch.pixels <= 4096, "a patch has 16 to 4096 pixels a side");
+    : printer_(printer),
+      patch_(checked(patch)),
+      process_(patch.pixels, patch.pixels, printer, {patch.subsamples, Surround::Mirror}),
+      seeds_(std::move(seeds)) {
   require(!seeds_.empty(), "a printed texture needs at least one seed");
   const auto octaves = split_ground(printer_, patch.wavelength).geometric;
   grounds_.assign(seeds_.size(), HeightField(relief_grid(printer_, patch_), Continuation::Mirrored));
@@ -60,7 +67,7 @@ HeightField PrintedTexture::print(const Pattern& pattern, std::size_t seed_index
   const PatternInstance instance = draw_instance(pattern, seeds_[seed_index]);
   const Exposure exposure = expose(pixel_heights(instance, printer_, patch_.pixels), printer_);
   const GrayImage gray = levels == GrayLevels::Quantized ? quantize(exposure.image, printer_) : exposure.image;
-  HeightField relief = print_layer(gray, printer_, {.subsamples = patch_.subsamples, .surround = Surround::Mirror});
+  HeightField relief = process_.print(gray);
   const auto ground = grounds_[seed_index].heights_um();
   std::ranges::transform(relief.heights_um(), ground, relief.heights_um().begin(), std::plus<float>());
   return relief;

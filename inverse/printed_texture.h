@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "forward/pattern/pattern.h"
-#include "forward/process/printed_relief.h"
+#include "forward/process/print_process.h"
 #include "forward/process/printer_profile.h"
 
 namespace mezzotint {
@@ -44,6 +44,7 @@ public:
 private:
   PrinterProfile printer_;
   PatchOptions patch_;
+  PrintProcess process_;
   std::vector<std::uint64_t> seeds_;
   std::vector<HeightField> grounds_;
 };

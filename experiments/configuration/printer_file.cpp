@@ -28,8 +28,13 @@ void read_cure(TomlTable table, CureCurve& cure) {
 }
 
 void read_blur(TomlTable table, PrinterProfile& printer) {
-  printer.blur_sigma = um(table, "sigma_um", {0.0, 100.0}, printer.blur_sigma);
-  printer.blur_is_calibrated = table.boolean("calibrated", printer.blur_is_calibrated);
+  const bool gaussian = table.choice("kernel", {"gaussian", "lorentzian"}, "gaussian") == "gaussian";
+  printer.spread.kernel = gaussian ? PixelSpread::Kernel::Gaussian : PixelSpread::Kernel::Lorentzian;
+  if (gaussian)
+    printer.spread.width = um(table, "sigma_um", {0.0, 100.0}, printer.spread.width);
+  else
+    printer.spread.width = Length::from_um(table.number("half_width_um", {0.0, 100.0}));
+  printer.spread.calibrated = table.boolean("calibrated", printer.spread.calibrated);
   table.finish();
 }
 

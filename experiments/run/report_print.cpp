@@ -110,13 +110,15 @@ Section measurement_section(const RunResults& results) {
 
 Section assumptions_section(const Experiment& experiment, const RunResults& results) {
   const PrinterProfile& printer = experiment.printer;
+  const bool gaussian = printer.spread.kernel == PixelSpread::Kernel::Gaussian;
   std::vector<Message> list;
-  list.push_back({printer.blur_is_calibrated ? MessageLevel::Note : MessageLevel::Warning,
-                  fmt::format("Blur of the projector: Gaussian, σ = {:.2f} µm ({:.2f} pixel), {}. It decides what can "
-                              "be reached more than "
-                              "anything else.",
-                              printer.blur_sigma.um(), printer.blur_sigma / printer.pixel_pitch,
-                              printer.blur_is_calibrated ? "calibrated" : "assumed")});
+  list.push_back(
+      {printer.spread.calibrated ? MessageLevel::Note : MessageLevel::Warning,
+       fmt::format("Blur of the projector: {}, {} = {:.2f} µm ({:.2f} pixel), {}. It decides what can "
+                   "be reached more than "
+                   "anything else.",
+                   gaussian ? "Gaussian" : "Lorentzian", gaussian ? "σ" : "half width", printer.spread.width.um(),
+                   printer.spread.width / printer.pixel_pitch, printer.spread.calibrated ? "calibrated" : "assumed")});
   list.push_back({printer.ground_is_calibrated ? MessageLevel::Note : MessageLevel::Warning,
                   fmt::format("Ground noise of the printer: amplitude {:.2f} µm, {}.", printer.ground_amplitude.um(),
                               printer.ground_is_calibrated ? "calibrated" : "assumed")});

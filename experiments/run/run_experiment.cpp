@@ -18,10 +18,11 @@ namespace mezzotint {
 namespace {
 
 std::string printer_text(const PrinterProfile& p) {
-  std::string text = fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", p.name, p.pixels_x, p.pixels_y,
-                                 p.pixel_pitch.um(), p.layer.um(), p.exposure_s, p.led_amplitude, p.gray_levels,
-                                 p.cure.alpha.um(), p.cure.beta.um(), p.cure.gamma, p.blur_sigma.um(),
-                                 p.blur_is_calibrated, p.ground_amplitude.um(), p.ground_is_calibrated);
+  std::string text =
+      fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", p.name, p.pixels_x, p.pixels_y, p.pixel_pitch.um(),
+                  p.layer.um(), p.exposure_s, p.led_amplitude, p.gray_levels, p.cure.alpha.um(), p.cure.beta.um(),
+                  p.cure.gamma, kernel_name(p.spread.kernel), p.spread.width.um(), p.spread.calibrated,
+                  p.ground_amplitude.um(), p.ground_is_calibrated);
   for (const auto& octave : p.ground) text += fmt::format(" {} {}", octave.weight, octave.scale.um());
   return text;
 }

@@ -15,4 +15,7 @@ struct PixelTaps {
 /// `sigma_pixels` over the pixels around, cut at 5σ, summing to 1. Without blur the pixel's own value.
 [[nodiscard]] std::vector<PixelTaps> pixel_taps(double sigma_pixels, std::size_t subsamples);
 
+/// Their derivatives toward σ, in 1/pixel, at the same places; zero without blur.
+[[nodiscard]] std::vector<PixelTaps> pixel_tap_slopes(double sigma_pixels, std::size_t subsamples);
+
 }  // namespace mezzotint

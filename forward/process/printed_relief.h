@@ -19,8 +19,10 @@ struct ProcessOptions {
 };
 
 /// The light that arrives at the resin: each pixel a square of its gray value, spread by the profile's
-/// Gaussian, sampled `subsamples` times a pixel and axis at the centres of the sub-pixels. Exact for piecewise
-/// constant pixels (differences of the error function), cut at 5σ and normalised.
+/// kernel, sampled `subsamples` times a pixel and axis at the centres of the sub-pixels. Exact for piecewise
+/// constant pixels: a Gaussian by differences of the error function, cut at 5σ and normalised; a Lorentzian, which
+/// nothing cuts, by its closed form over a rectangle (copies of the patch that are far away shine as if smeared out,
+/// right to 1e-6).
 ///
 /// Shape    columns·subsamples × rows·subsamples; pitch = pixel pitch / subsamples.
 /// Errors   InvalidInput for an invalid image or profile, subsamples outside of 1…16, or more than 2^30 samples.
@@ -58,7 +60,7 @@ void add_ground(HeightField& relief, const PrinterProfile& profile, const std::v
 [[nodiscard]] double ground_rms_slope(const PrinterProfile& profile, const std::vector<GroundOctave>& octaves);
 
 /// How much of a slope of the given wavelength, along a pixel axis, survives pixel and blur:
-/// sinc(p/λ)·exp(−2π²σ²/λ²). Linear in light, so to first order in height.
+/// sinc(p/λ)·exp(−2π²σ²/λ²), of a Lorentzian sinc(p/λ)·exp(−2πw/λ). Linear in light, so to first order in height.
 [[nodiscard]] double pixel_transfer(const PrinterProfile& profile, Length wavelength);
 
 }  // namespace mezzotint

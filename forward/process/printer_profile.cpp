@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "forward/base/error.h"
 
@@ -21,9 +22,10 @@ void require_valid_light(const PrinterProfile& profile) {
           "printer profile: led_amplitude must be within 1 and 255");
   require(profile.gray_levels >= 2 && profile.gray_levels <= 65536,
           "printer profile: gray_levels must be within 2 and 65536");
-  require(at_least_zero(profile.blur_sigma.um()), "printer profile: [blur] sigma_um must be 0 or more");
-  require(profile.blur_sigma / profile.pixel_pitch <= widest_blur_pixels,
-          "printer profile: [blur] sigma_um must be at most 64 pixels");
+  const bool gaussian = profile.spread.kernel == PixelSpread::Kernel::Gaussian;
+  const std::string key = gaussian ? "printer profile: [blur] sigma_um" : "printer profile: [blur] half_width_um";
+  require(at_least_zero(profile.spread.width.um()), key + " must be 0 or more");
+  require(profile.spread.width / profile.pixel_pitch <= widest_blur_pixels, key + " must be at most 64 pixels");
   require_valid(profile.cure);
 }
 
@@ -36,6 +38,10 @@ void require_valid_ground(const PrinterProfile& profile) {
 }
 
 }  // namespace
+
+std::string_view kernel_name(PixelSpread::Kernel kernel) {
+  return kernel == PixelSpread::Kernel::Gaussian ? "gaussian" : "lorentzian";
+}
 
 void require_valid(const PrinterProfile& profile) {
   require(profile.pixels_x >= 1 && profile.pixels_x <= 65535, "printer profile: pixels_x must be within 1 and 65535");

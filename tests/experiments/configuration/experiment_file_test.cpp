@@ -47,9 +47,22 @@ TEST_F(ExperimentFile, TheSlidesPrinterIsTheDefaultOne) {
   EXPECT_EQ(read.pixels_x, built_in.pixels_x);
   EXPECT_EQ(read.pixel_pitch, built_in.pixel_pitch);
   EXPECT_EQ(read.cure.alpha, built_in.cure.alpha);
-  EXPECT_EQ(read.blur_sigma, built_in.blur_sigma);
+  EXPECT_EQ(read.spread.width, built_in.spread.width);
   ASSERT_EQ(read.ground.size(), built_in.ground.size());
   for (std::size_t i = 0; i < read.ground.size(); ++i) EXPECT_EQ(read.ground[i].weight, built_in.ground[i].weight);
+}
+
+TEST_F(ExperimentFile, NamesTheWidthOfABlurByItsKernel) {
+  const auto printer_of = [this](const std::string& blur) {
+    std::ofstream(folder_ / "printer.toml") << "[blur]\n" << blur;
+    return read_printer(folder_ / "printer.toml");
+  };
+  const PixelSpread wide = printer_of("kernel = \"lorentzian\"\nhalf_width_um = 2.5\n").spread;
+  EXPECT_EQ(wide.kernel, PixelSpread::Kernel::Lorentzian);
+  EXPECT_EQ(wide.width, 2.5_um);
+  EXPECT_THROW((void)printer_of("kernel = \"lorentzian\"\nsigma_um = 2.5\n"), ConfigurationError);
+  EXPECT_THROW((void)printer_of("kernel = \"lorentzian\"\n"), ConfigurationError);
+  EXPECT_THROW((void)printer_of("half_width_um = 2.5\n"), ConfigurationError);
 }
 
 TEST_F(ExperimentFile, LeavesThePatternToUsWithAReason) {

@@ -107,7 +107,7 @@ TEST(PrinterProfile, NamesTheKeyThatIsWrong) {
   profile.pixels_x = 0;
   EXPECT_NE(complaint(profile).find("pixels_x"), std::string::npos);
   profile = {};
-  profile.blur_sigma = -1.0_um;
+  profile.spread.width = -1.0_um;
   EXPECT_NE(complaint(profile).find("[blur] sigma_um"), std::string::npos);
   profile = {};
   profile.layer = Length::from_um(std::nan(""));

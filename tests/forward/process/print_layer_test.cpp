@@ -13,7 +13,7 @@ GrayImage uniform(float gray) { return {6, 6, std::vector<float>(36, gray)}; }
 TEST(PrintLayer, ReproducesTheCureCurveOnAUniformWedge) {
   PrinterProfile profile;
   for (const double sigma_um : {0.0, 3.77, 11.0}) {
-    profile.blur_sigma = Length::from_um(sigma_um);
+    profile.spread.width = Length::from_um(sigma_um);
     for (int level = 0; level <= 255; ++level) {
       const auto gray = static_cast<float>(level / 255.0);
       const double curve_um = level < 43 ? 0.0 : 17.71 + 10.24 * std::log(level / 255.0 + 0.01);
@@ -26,7 +26,7 @@ TEST(PrintLayer, ReproducesTheCureCurveOnAUniformWedge) {
 
 TEST(PrintLayer, FollowsTheLogarithmOverAllGrayValues) {
   PrinterProfile profile;
-  profile.blur_sigma = Length{};
+  profile.spread.width = Length{};
   GrayImage ramp{20000, 1, {}};
   for (int i = 0; i < 20000; ++i) ramp.values.push_back(static_cast<float>(i / 19999.0));
   const HeightField printed = print_layer(ramp, profile, {1, Surround::Mirror});

@@ -27,7 +27,7 @@ double mean(const GrayImage& image) {
 TEST(SpreadLight, AttenuatesASinusoidByPixelAndBlur) {
   constexpr std::size_t period = 8, subsamples = 5;
   PrinterProfile profile;
-  profile.blur_sigma = 4.5_um;
+  profile.spread.width = 4.5_um;
   GrayImage image{period, 3, {}};
   for (std::size_t i = 0; i < period * 3; ++i) {
     const double phase = 2.0 * std::numbers::pi * (static_cast<double>(i % period) + 0.5) / period;
@@ -64,7 +64,7 @@ TEST(SpreadLight, IsTheIntegralOfTheGaussianOverAnEdge) {
 TEST(SpreadLight, KeepsAllLightOfARepeatedTile) {
   PrinterProfile profile;
   for (const double sigma_um : {0.0, 1.0, 3.77, 20.0}) {
-    profile.blur_sigma = Length::from_um(sigma_um);
+    profile.spread.width = Length::from_um(sigma_um);
     const GrayImage image = random_image(9, 5);  // narrower than the widest blur: it wraps around several times
     // Float taps and sums: 1e-7 each.
     EXPECT_NEAR(mean(spread_light(image, profile, {3, Surround::Repeat})), mean(image), 3e-7);
@@ -85,7 +85,7 @@ TEST(SpreadLight, LosesLightIntoTheDark) {
 
 TEST(SpreadLight, ContinuesByRepetitionOrByMirrors) {
   PrinterProfile profile;
-  profile.blur_sigma = 9.0_um;
+  profile.spread.width = 9.0_um;
   const GrayImage image = random_image(7, 4);
   for (const Surround surround : {Surround::Repeat, Surround::Mirror}) {
     GrayImage tiled{21, 12, {}};
@@ -128,7 +128,7 @@ TEST(SpreadLight, KeepsASymmetricImageSymmetric) {
 
 TEST(SpreadLight, LeavesPixelsAloneWithoutBlur) {
   PrinterProfile profile;
-  profile.blur_sigma = Length{};
+  profile.spread.width = Length{};
   const GrayImage image = random_image(5, 3);
   const GrayImage light = spread_light(image, profile, {4, Surround::Dark});
   for (std::size_t r = 0; r < 12; ++r) {

@@ -1,0 +1,176 @@
+#include "forward/process/gaussian_spread.h"
+
+#include <algorithm>
+#include <cstdint>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "forward/process/surrounding_pixel.h"
+
+namespace mezzotint {
+
+namespace {
+
+// Values at a time in the inner loops: the sum and a source stay in the first-level cache.
+constexpr std::size_t block = 2048;
+
+struct WeightedRow {
+  const float* values;
+  float weight;
+};
+
+void set_scaled(float* __restrict out, std::size_t count, WeightedRow a) {
+  for (std::size_t i = 0; i < count; ++i) out[i] = a.weight * a.values[i];
+}
+
+void add_pair(float* __restrict out, std::size_t count, WeightedRow a, WeightedRow b) {
+  for (std::size_t i = 0; i < count; ++i) out[i] += a.weight * a.values[i] + b.weight * b.values[i];
+}
+
+// out = Σ weight · row, always summed in the same order.
+void blend(std::span<const WeightedRow> rows, std::size_t count, float* out) {
+  if (rows.empty()) {
+    std::fill_n(out, count, 0.0F);
+    return;
+  }
+  const auto at = [](WeightedRow row, std::size_t start) { return WeightedRow{row.values + start, row.weight}; };
+  for (std::size_t start = 0; start < count; start += block) {
+    const std::size_t length = std::min(block, count - start);
+    set_scaled(out + start, length, at(rows[0], start));
+    for (std::size_t k = 1; k < rows.size(); k += 2) {
+      const bool alone = k + 1 == rows.size();
+      const WeightedRow second = alone ? WeightedRow{rows[k].values, 0.0F} : rows[k + 1];
+      add_pair(out + start, length, at(rows[k], start), at(second, start));
+    }
+  }
+}
+
+std::vector<float> padded(const float* pixels, std::size_t count, int reach, Surround surround) {
+  std::vector<float> values(count + 2 * static_cast<std::size_t>(reach), 0.0F);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto source = pixel_at(static_cast<std::int64_t>(i) - reach, count, surround);
+    if (source) values[i] = pixels[*source];
+  }
+  return values;
+}
+
+// out(pixel) = Σ over the samples that it gives light to; sample(s, i) is the one of phase s in pixel i.
+template <class Sample, class Add>
+void gather(std::size_t count, Surround surround, const std::vector<PixelTaps>& taps, const Sample& sample,
+            const Add& add) {
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t s = 0; s < taps.size(); ++s) {
+      for (std::size_t k = 0; k < taps[s].weights.size(); ++k) {
+        const auto pixel = pixel_at(static_cast<std::int64_t>(i + k) + taps[s].first, count, surround);
+        if (pixel) add(*pixel, taps[s].weights[k], sample(s, i));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+GaussianSpread::GaussianSpread(std::size_t columns, std::size_t rows, double sigma_pixels,
+                               const ProcessOptions& options)
+    : columns_(columns),
+      rows_(rows),
+      width_(columns * options.subsamples),
+      options_(options),
+      taps_(pixel_taps(sigma_pixels, options.subsamples)),
+      slopes_(pixel_tap_slopes(sigma_pixels, options.subsamples)) {}
+
+GaussianSpread::Wide GaussianSpread::widen(const GrayImage& image, const std::vector<PixelTaps>& taps) const {
+  Wide wide(width_ * rows_);
+  tbb::parallel_for(std::size_t{0}, rows_, [&](std::size_t row) {
+    widen_row(image.values.data() + row * columns_, taps, wide.data() + row * width_);
+  });
+  return wide;
+}
+
+// Every phase on its own over contiguous pixels, then woven together.
+void GaussianSpread::widen_row(const float* pixels, const std::vector<PixelTaps>& taps, float* out) const {
+  const int reach = std::max(-taps.front().first, taps.back().first + static_cast<int>(taps.back().weights.size()));
+  const std::vector<float> values = padded(pixels, columns_, reach, options_.surround);
+  std::vector<float> phase_row(columns_);
+  std::vector<WeightedRow> sources;
+  for (std::size_t s = 0; s < taps.size(); ++s) {
+    sources.clear();
+    const float* const start = values.data() + reach + taps[s].first;
+    for (std::size_t k = 0; k < taps[s].weights.size(); ++k) sources.push_back({start + k, taps[s].weights[k]});
+    blend(sources, columns_, phase_row.data());
+    for (std::size_t i = 0; i < columns_; ++i) out[i * taps.size() + s] = phase_row[i];
+  }
+}
+
+void GaussianSpread::sample_row(const Wide& wide, std::size_t row, const PixelTaps& taps, float* out) const {
+  std::vector<WeightedRow> sources;
+  for (std::size_t k = 0; k < taps.weights.size(); ++k) {
+    const auto source = pixel_at(static_cast<std::int64_t>(row + k) + taps.first, rows_, options_.surround);
+    if (source) sources.push_back({wide.data() + *source * width_, taps.weights[k]});
+  }
+  blend(sources, width_, out);
+}
+
+GrayImage GaussianSpread::apply(const GrayImage& image, const RowFinish& finish) const {
+  const Wide wide = widen(image, taps_);
+  GrayImage light{width_, rows_ * options_.subsamples, {}};
+  light.values.resize(light.columns * light.rows);
+  tbb::parallel_for(std::size_t{0}, rows_, [&](std::size_t row) {
+    for (std::size_t phase = 0; phase < options_.subsamples; ++phase) {
+      float* const out = light.values.data() + (row * options_.subsamples + phase) * width_;
+      sample_row(wide, row, taps_[phase], out);
+      if (finish) finish({out, width_});
+    }
+  });
+  return light;
+}
+
+// Along one axis the slopes, along the other the taps, and the other way round.
+GrayImage GaussianSpread::apply_width_slope(const GrayImage& image) const {
+  const Wide steep = widen(image, slopes_), plain = widen(image, taps_);
+  GrayImage light{width_, rows_ * options_.subsamples, {}};
+  light.values.resize(light.columns * light.rows);
+  tbb::parallel_for(std::size_t{0}, rows_, [&](std::size_t row) {
+    std::vector<float> second(width_);
+    for (std::size_t phase = 0; phase < options_.subsamples; ++phase) {
+      float* const out = light.values.data() + (row * options_.subsamples + phase) * width_;
+      sample_row(steep, row, taps_[phase], out);
+      sample_row(plain, row, slopes_[phase], second.data());
+      for (std::size_t i = 0; i < width_; ++i) out[i] += second[i];
+    }
+  });
+  return light;
+}
+
+// Down the columns, a strip of them at a time: every strip is summed in the same order.
+GrayImage GaussianSpread::gather_rows(const GrayImage& samples) const {
+  GrayImage gathered{width_, rows_, std::vector<float>(width_ * rows_, 0.0F)};
+  constexpr std::size_t strip = 256;
+  tbb::parallel_for(std::size_t{0}, (width_ + strip - 1) / strip, [&](std::size_t index) {
+    const std::size_t start = index * strip, length = std::min(strip, width_ - start);
+    const auto sample = [&](std::size_t s, std::size_t row) {
+      return samples.values.data() + (row * options_.subsamples + s) * width_ + start;
+    };
+    gather(rows_, options_.surround, taps_, sample, [&](std::size_t row, float weight, const float* values) {
+      float* const out = gathered.values.data() + row * width_ + start;
+      for (std::size_t i = 0; i < length; ++i) out[i] += weight * values[i];
+    });
+  });
+  return gathered;
+}
+
+GrayImage GaussianSpread::transposed(const GrayImage& samples) const {
+  const GrayImage gathered = gather_rows(samples);
+  GrayImage pixels{columns_, rows_, std::vector<float>(columns_ * rows_, 0.0F)};
+  tbb::parallel_for(std::size_t{0}, rows_, [&](std::size_t row) {
+    const float* const values = gathered.values.data() + row * width_;
+    float* const out = pixels.values.data() + row * columns_;
+    const auto sample = [&](std::size_t s, std::size_t column) { return values[column * options_.subsamples + s]; };
+    gather(columns_, options_.surround, taps_, sample,
+           [out](std::size_t column, float weight, float value) { out[column] += weight * value; });
+  });
+  return pixels;
+}
+
+}  // namespace mezzotint
