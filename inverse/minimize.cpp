@@ -32,6 +32,10 @@ double to_unit(const Variable& variable, double value) {
   if (variable.logarithmic) return std::log(value / variable.low) / std::log(variable.high / variable.low);
   return (value - variable.low) / (variable.high - variable.low);
 }
+// ∂value/∂unit.
+double stretch(const Variable& variable, double value) {
+  return variable.logarithmic ? value * std::log(variable.high / variable.low) : variable.high - variable.low;
+}
 double from_unit(const Variable& variable, double unit) {
   const double t = std::clamp(unit, 0.0, 1.0);
   const double value = variable.logarithmic ? variable.low * std::pow(variable.high / variable.low, t)
@@ -53,9 +57,13 @@ void require_valid_variables(const std::vector<Variable>& variables) {
 // The border between NLopt and the rest: counts, keeps the best, and lets no exception through to C.
 class Border {
 public:
-  Border(const std::vector<Variable>& variables, const Objective& objective, const SearchObserver& observer,
-         int max_evaluations)
-      : variables_(variables), objective_(objective), observer_(observer), max_evaluations_(max_evaluations) {
+  Border(const std::vector<Variable>& variables, Objective objective, SteepObjective steep,
+         const SearchObserver& observer, int max_evaluations)
+      : variables_(variables),
+        objective_(std::move(objective)),
+        steep_(std::move(steep)),
+        observer_(observer),
+        max_evaluations_(max_evaluations) {
     result_.best.objective = std::numeric_limits<double>::infinity();
   }
 
@@ -72,8 +80,14 @@ public:
 private:
   static double call(unsigned count, const double* unit, double* gradient, void* self) {
     auto& border = *static_cast<Border*>(self);
-    std::vector<double> point(unit, unit + count);
-    const double value = border.evaluate(point);
+    const std::vector<double> point(unit, unit + count);
+    if (border.steep_) {
+      std::vector<double> slopes(count, 0.0);
+      const double value = border.evaluate(point, &slopes);
+      if (gradient != nullptr) std::ranges::copy(slopes, gradient);
+      return value;
+    }
+    const double value = border.evaluate(point, nullptr);
     for (unsigned i = 0; gradient != nullptr && i < count; ++i) gradient[i] = border.slope(point, i);
     return value;
   }
@@ -83,18 +97,18 @@ private:
     constexpr double step = 1e-3;
     const double low = std::max(0.0, point[i] - step), high = std::min(1.0, point[i] + step);
     point[i] = high;
-    const double above = evaluate(point);
+    const double above = evaluate(point, nullptr);
     point[i] = low;
-    return (above - evaluate(point)) / (high - low);
+    return (above - evaluate(point, nullptr)) / (high - low);
   }
 
-  double evaluate(const std::vector<double>& unit) {
+  double evaluate(const std::vector<double>& unit, std::vector<double>* slopes) {
     if (failure_ || ran_out()) {
       nlopt_force_stop(optimizer_);
       return penalty;
     }
     try {
-      return evaluate_unguarded(unit);
+      return evaluate_unguarded(unit, slopes);
     } catch (...) {
       failure_ = std::current_exception();
       nlopt_force_stop(optimizer_);
@@ -102,10 +116,13 @@ private:
     }
   }
 
-  double evaluate_unguarded(const std::vector<double>& unit) {
+  // Slopes are wanted in the unit cube, where NLopt works.
+  double evaluate_unguarded(const std::vector<double>& unit, std::vector<double>* slopes) {
     SearchStep step;
     for (std::size_t i = 0; i < unit.size(); ++i) step.values.push_back(from_unit(variables_[i], unit[i]));
-    step.objective = objective_(step.values);
+    step.objective = slopes != nullptr ? steep_(step.values, *slopes) : objective_(step.values);
+    for (std::size_t i = 0; slopes != nullptr && i < unit.size(); ++i)
+      (*slopes)[i] *= stretch(variables_[i], step.values[i]);
     ++result_.evaluations;
     if (std::isfinite(step.objective) && step.objective < result_.best.objective) result_.best = step;
     if (observer_) observer_(result_.evaluations, step);
@@ -113,7 +130,8 @@ private:
   }
 
   const std::vector<Variable>& variables_;
-  const Objective& objective_;
+  Objective objective_;
+  SteepObjective steep_;  // where it is there, the other one is not
   const SearchObserver& observer_;
   int max_evaluations_;
   nlopt_opt optimizer_ = nullptr;
@@ -155,14 +173,18 @@ bool is_known_algorithm(const std::string& name) {
   return static_cast<int>(nlopt_algorithm_from_string(name.c_str())) >= 0;
 }
 
-MinimizeResult minimize(const std::vector<Variable>& variables, const Objective& objective,
-                        const MinimizeOptions& options, const SearchObserver& observer) {
+namespace {
+
+void require_valid_search(const std::vector<Variable>& variables, const MinimizeOptions& options) {
   require_valid_variables(variables);
   require(options.max_evaluations > 0, "a search needs at least one evaluation");
   require(is_known_algorithm(options.algorithm),
           "NLopt knows no algorithm \"" + options.algorithm +
               "\"; names read like LN_BOBYQA, LN_SBPLX, LN_COBYLA, "
               "LN_NELDERMEAD, GN_DIRECT_L, GN_CRS2_LM, G_MLSL_LDS, LD_LBFGS, LD_SLSQP");
+}
+
+MinimizeResult run(const std::vector<Variable>& variables, Border& border, const MinimizeOptions& options) {
   const auto count = static_cast<unsigned>(variables.size());
   const Optimizer optimizer = make_optimizer(options.algorithm, count, options);
   if (wants_local_search(options.algorithm)) {
@@ -171,7 +193,6 @@ MinimizeResult minimize(const std::vector<Variable>& variables, const Objective&
   }
   nlopt_srand(static_cast<unsigned long>(options.seed));
 
-  Border border(variables, objective, observer, options.max_evaluations);
   border.attach(optimizer.get());
   std::vector<double> unit;
   unit.reserve(variables.size());
@@ -188,6 +209,24 @@ MinimizeResult minimize(const std::vector<Variable>& variables, const Objective&
   result.outcome = in_words(outcome, ran_out);
   result.converged = !ran_out && outcome > 0;
   return result;
+}
+
+}  // namespace
+
+MinimizeResult minimize(const std::vector<Variable>& variables, const Objective& objective,
+                        const MinimizeOptions& options, const SearchObserver& observer) {
+  require_valid_search(variables, options);
+  Border border(variables, objective, {}, observer, options.max_evaluations);
+  return run(variables, border, options);
+}
+
+MinimizeResult minimize_with_slopes(const std::vector<Variable>& variables, const SteepObjective& objective,
+                                    const MinimizeOptions& options, const SearchObserver& observer) {
+  require_valid_search(variables, options);
+  require(wants_gradient(options.algorithm),
+          options.algorithm + " takes no slopes; those that do read like LD_MMA, LD_LBFGS, LD_SLSQP");
+  Border border(variables, {}, objective, observer, options.max_evaluations);
+  return run(variables, border, options);
 }
 
 }  // namespace mezzotint

@@ -41,6 +41,8 @@ struct MinimizeResult {
 
 /// Called with the variables' values; may throw, which ends the search and reaches the caller unchanged.
 using Objective = std::function<double(const std::vector<double>&)>;
+/// The same, which also sets its slope toward every value, in the values' own units. (One slope a value is there.)
+using SteepObjective = std::function<double(const std::vector<double>& values, std::vector<double>& slopes)>;
 /// Called after each evaluation with its number and what it gave; may throw to stop.
 using SearchObserver = std::function<void(int evaluation, const SearchStep&)>;
 
@@ -57,5 +59,11 @@ using SearchObserver = std::function<void(int evaluation, const SearchStep&)>;
 /// @throws MethodError where not one evaluation gave a finite objective.
 [[nodiscard]] MinimizeResult minimize(const std::vector<Variable>& variables, const Objective& objective,
                                       const MinimizeOptions& options, const SearchObserver& observer = {});
+
+/// The same with slopes of the objective's own, for thousands of variables; NLopt's "LD_…" algorithms only.
+/// @throws InvalidInput for an algorithm that takes no slopes.
+[[nodiscard]] MinimizeResult minimize_with_slopes(const std::vector<Variable>& variables,
+                                                  const SteepObjective& objective, const MinimizeOptions& options,
+                                                  const SearchObserver& observer = {});
 
 }  // namespace mezzotint

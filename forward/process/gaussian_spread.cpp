@@ -73,14 +73,16 @@ void gather(std::size_t count, Surround surround, const std::vector<PixelTaps>& 
 
 GaussianSpread::GaussianSpread(std::size_t columns, std::size_t rows, double sigma_pixels,
                                const ProcessOptions& options)
-    : columns_(columns),
-      rows_(rows),
-      width_(columns * options.subsamples),
-      options_(options),
-      taps_(pixel_taps(sigma_pixels, options.subsamples)),
-      slopes_(pixel_tap_slopes(sigma_pixels, options.subsamples)) {}
+    : columns_(columns), rows_(rows), width_(columns * options.subsamples), sigma_(sigma_pixels), options_(options) {}
 
-GaussianSpread::Wide GaussianSpread::widen(const GrayImage& image, const std::vector<PixelTaps>& taps) const {
+GaussianSpread::Taps GaussianSpread::taps_x(TapKind kind) const {
+  return pixel_taps(kind, sigma_, options_.subsamples, options_.place_x);
+}
+GaussianSpread::Taps GaussianSpread::taps_y(TapKind kind) const {
+  return pixel_taps(kind, sigma_, options_.subsamples, options_.place_y);
+}
+
+GaussianSpread::Wide GaussianSpread::widen(const GrayImage& image, const Taps& taps) const {
   Wide wide(width_ * rows_);
   tbb::parallel_for(std::size_t{0}, rows_, [&](std::size_t row) {
     widen_row(image.values.data() + row * columns_, taps, wide.data() + row * width_);
@@ -89,7 +91,7 @@ GaussianSpread::Wide GaussianSpread::widen(const GrayImage& image, const std::ve
 }
 
 // Every phase on its own over contiguous pixels, then woven together.
-void GaussianSpread::widen_row(const float* pixels, const std::vector<PixelTaps>& taps, float* out) const {
+void GaussianSpread::widen_row(const float* pixels, const Taps& taps, float* out) const {
   const int reach = std::max(-taps.front().first, taps.back().first + static_cast<int>(taps.back().weights.size()));
   const std::vector<float> values = padded(pixels, columns_, reach, options_.surround);
   std::vector<float> phase_row(columns_);
@@ -112,39 +114,34 @@ void GaussianSpread::sample_row(const Wide& wide, std::size_t row, const PixelTa
   blend(sources, width_, out);
 }
 
-GrayImage GaussianSpread::apply(const GrayImage& image, const RowFinish& finish) const {
-  const Wide wide = widen(image, taps_);
+GrayImage GaussianSpread::spread(const GrayImage& image, const Taps& along_x, const Taps& along_y,
+                                 const RowFinish& finish) const {
+  const Wide wide = widen(image, along_x);
   GrayImage light{width_, rows_ * options_.subsamples, {}};
   light.values.resize(light.columns * light.rows);
   tbb::parallel_for(std::size_t{0}, rows_, [&](std::size_t row) {
     for (std::size_t phase = 0; phase < options_.subsamples; ++phase) {
       float* const out = light.values.data() + (row * options_.subsamples + phase) * width_;
-      sample_row(wide, row, taps_[phase], out);
+      sample_row(wide, row, along_y[phase], out);
       if (finish) finish({out, width_});
     }
   });
   return light;
 }
 
-// Along one axis the slopes, along the other the taps, and the other way round.
-GrayImage GaussianSpread::apply_width_slope(const GrayImage& image) const {
-  const Wide steep = widen(image, slopes_), plain = widen(image, taps_);
-  GrayImage light{width_, rows_ * options_.subsamples, {}};
-  light.values.resize(light.columns * light.rows);
-  tbb::parallel_for(std::size_t{0}, rows_, [&](std::size_t row) {
-    std::vector<float> second(width_);
-    for (std::size_t phase = 0; phase < options_.subsamples; ++phase) {
-      float* const out = light.values.data() + (row * options_.subsamples + phase) * width_;
-      sample_row(steep, row, taps_[phase], out);
-      sample_row(plain, row, slopes_[phase], second.data());
-      for (std::size_t i = 0; i < width_; ++i) out[i] += second[i];
-    }
-  });
+GrayImage GaussianSpread::apply(const GrayImage& image, LightPart part, const RowFinish& finish) const {
+  const auto along = [](bool steep) { return steep ? TapKind::PlaceSlope : TapKind::Value; };
+  if (part != LightPart::WidthSlope)
+    return spread(image, taps_x(along(part == LightPart::SlopeX)), taps_y(along(part == LightPart::SlopeY)), finish);
+  // Along one axis the slopes, along the other the values, and the other way round.
+  GrayImage light = spread(image, taps_x(TapKind::WidthSlope), taps_y(TapKind::Value), {});
+  const GrayImage second = spread(image, taps_x(TapKind::Value), taps_y(TapKind::WidthSlope), {});
+  for (std::size_t i = 0; i < light.values.size(); ++i) light.values[i] += second.values[i];
   return light;
 }
 
 // Down the columns, a strip of them at a time: every strip is summed in the same order.
-GrayImage GaussianSpread::gather_rows(const GrayImage& samples) const {
+GrayImage GaussianSpread::gather_rows(const GrayImage& samples, const Taps& taps) const {
   GrayImage gathered{width_, rows_, std::vector<float>(width_ * rows_, 0.0F)};
   constexpr std::size_t strip = 256;
   tbb::parallel_for(std::size_t{0}, (width_ + strip - 1) / strip, [&](std::size_t index) {
@@ -152,7 +149,7 @@ GrayImage GaussianSpread::gather_rows(const GrayImage& samples) const {
     const auto sample = [&](std::size_t s, std::size_t row) {
       return samples.values.data() + (row * options_.subsamples + s) * width_ + start;
     };
-    gather(rows_, options_.surround, taps_, sample, [&](std::size_t row, float weight, const float* values) {
+    gather(rows_, options_.surround, taps, sample, [&](std::size_t row, float weight, const float* values) {
       float* const out = gathered.values.data() + row * width_ + start;
       for (std::size_t i = 0; i < length; ++i) out[i] += weight * values[i];
     });
@@ -160,14 +157,16 @@ GrayImage GaussianSpread::gather_rows(const GrayImage& samples) const {
   return gathered;
 }
 
-GrayImage GaussianSpread::transposed(const GrayImage& samples) const {
-  const GrayImage gathered = gather_rows(samples);
+GrayImage GaussianSpread::transposed(const GrayImage& samples, LightPart part) const {
+  const auto along = [](bool steep) { return steep ? TapKind::PlaceSlope : TapKind::Value; };
+  const Taps along_x = taps_x(along(part == LightPart::SlopeX)), along_y = taps_y(along(part == LightPart::SlopeY));
+  const GrayImage gathered = gather_rows(samples, along_y);
   GrayImage pixels{columns_, rows_, std::vector<float>(columns_ * rows_, 0.0F)};
   tbb::parallel_for(std::size_t{0}, rows_, [&](std::size_t row) {
     const float* const values = gathered.values.data() + row * width_;
     float* const out = pixels.values.data() + row * columns_;
     const auto sample = [&](std::size_t s, std::size_t column) { return values[column * options_.subsamples + s]; };
-    gather(columns_, options_.surround, taps_, sample,
+    gather(columns_, options_.surround, along_x, sample,
            [out](std::size_t column, float weight, float value) { out[column] += weight * value; });
   });
   return pixels;

@@ -12,6 +12,9 @@
 
 namespace mezzotint {
 
+/// What is wanted of the light: itself, or its derivative toward the width of the blur, or toward x or y; a pixel.
+enum class LightPart { Value, WidthSlope, SlopeX, SlopeY };
+
 /// Called with every finished row of samples, while it is still in the cache; in any order, by several threads.
 using RowFinish = std::function<void(std::span<float>)>;
 
@@ -23,22 +26,26 @@ class GaussianSpread {
 public:
   GaussianSpread(std::size_t columns, std::size_t rows, double sigma_pixels, const ProcessOptions& options);
 
-  [[nodiscard]] GrayImage apply(const GrayImage& image, const RowFinish& finish) const;
-  /// d apply / dσ, a pixel of σ.
-  [[nodiscard]] GrayImage apply_width_slope(const GrayImage& image) const;
-  /// The transposed operator: from samples to pixels.
-  [[nodiscard]] GrayImage transposed(const GrayImage& samples) const;
+  /// @param finish  may be empty
+  [[nodiscard]] GrayImage apply(const GrayImage& image, LightPart part, const RowFinish& finish) const;
+  /// The transposed operator, from samples to pixels. (Of the width's slope there is none: nobody asks for it.)
+  [[nodiscard]] GrayImage transposed(const GrayImage& samples, LightPart part) const;
 
 private:
   using Wide = std::vector<float>;  // spread along the rows only
-  [[nodiscard]] Wide widen(const GrayImage& image, const std::vector<PixelTaps>& taps) const;
-  void widen_row(const float* pixels, const std::vector<PixelTaps>& taps, float* out) const;
+  using Taps = std::vector<PixelTaps>;
+  [[nodiscard]] GrayImage spread(const GrayImage& image, const Taps& along_x, const Taps& along_y,
+                                 const RowFinish& finish) const;
+  [[nodiscard]] Wide widen(const GrayImage& image, const Taps& taps) const;
+  void widen_row(const float* pixels, const Taps& taps, float* out) const;
   void sample_row(const Wide& wide, std::size_t row, const PixelTaps& taps, float* out) const;
-  [[nodiscard]] GrayImage gather_rows(const GrayImage& samples) const;
+  [[nodiscard]] GrayImage gather_rows(const GrayImage& samples, const Taps& taps) const;
+  [[nodiscard]] Taps taps_x(TapKind kind) const;
+  [[nodiscard]] Taps taps_y(TapKind kind) const;
 
   std::size_t columns_, rows_, width_;
+  double sigma_;
   ProcessOptions options_;
-  std::vector<PixelTaps> taps_, slopes_;
 };
 
 }  // namespace mezzotint

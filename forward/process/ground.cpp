@@ -28,8 +28,8 @@ std::uint64_t octave_seed(std::uint64_t seed, const std::vector<GroundOctave>& o
 }
 
 // Missing samples are NaN and stay it.
-void add_octave(HeightField& relief, double amplitude_um, Length scale, std::uint64_t seed) {
-  const PatternMap map = in_units({}, scale.um(), scale.um());
+void add_octave(HeightField& relief, const Position& first, double amplitude_um, Length scale, std::uint64_t seed) {
+  const PatternMap map = in_units({.u0 = first.x.um(), .v0 = first.y.um()}, scale.um(), scale.um());
   add_sparse_noise(relief.heights_um(), relief.grid(), map, NoiseLattice(seed, CellHash::Integer),
                    plane_of_mean_roughness, amplitude_um);
 }
@@ -54,15 +54,41 @@ GroundSplit split_ground(const PrinterProfile& profile, Length wavelength) {
   return split;
 }
 
-void add_ground(HeightField& relief, const PrinterProfile& profile, const std::vector<GroundOctave>& octaves,
-                std::uint64_t seed) {
+namespace {
+
+void add_ground_from(HeightField& relief, const Position& first, const PrinterProfile& profile,
+                     const std::vector<GroundOctave>& octaves, std::uint64_t seed) {
   PrinterProfile checked = profile;
   checked.ground = octaves;
   require_valid(checked);
   for (std::size_t i = 0; i < octaves.size(); ++i) {
     const double amplitude_um = profile.ground_amplitude.um() * octaves[i].weight;
-    if (amplitude_um != 0.0) add_octave(relief, amplitude_um, octaves[i].scale, octave_seed(seed, octaves, i));
+    if (amplitude_um != 0.0) add_octave(relief, first, amplitude_um, octaves[i].scale, octave_seed(seed, octaves, i));
   }
+}
+
+}  // namespace
+
+void add_ground(HeightField& relief, const PrinterProfile& profile, const std::vector<GroundOctave>& octaves,
+                std::uint64_t seed) {
+  add_ground_from(relief, {}, profile, octaves, seed);
+}
+
+ReliefSlopes ground_slopes(const Grid& grid, const Position& first, const PrinterProfile& profile,
+                           const std::vector<GroundOctave>& octaves, std::uint64_t seed) {
+  constexpr double step_um = 0.1;
+  const auto moved = [&](double x_um, double y_um) {
+    HeightField ground(grid, Continuation::Mirrored);
+    add_ground_from(ground, {first.x + Length::from_um(x_um), first.y + Length::from_um(y_um)}, profile, octaves, seed);
+    return ground;
+  };
+  const auto slopes = [&](const HeightField& above, const HeightField& below) {
+    std::vector<float> values(grid.size());
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = (above.heights_um()[i] - below.heights_um()[i]) / static_cast<float>(2.0 * step_um);
+    return values;
+  };
+  return {slopes(moved(step_um, 0.0), moved(-step_um, 0.0)), slopes(moved(0.0, step_um), moved(0.0, -step_um))};
 }
 
 double ground_rms_slope(const PrinterProfile& profile, const std::vector<GroundOctave>& octaves) {

@@ -7,6 +7,8 @@ namespace mezzotint {
 LightSpread light_spread(std::size_t columns, std::size_t rows, const PrinterProfile& profile,
                          const ProcessOptions& options) {
   require(options.subsamples >= 1 && options.subsamples <= 16, "subsamples must be within 1 and 16");
+  const auto within = [](double place) { return place >= 0.0 && place <= 1.0; };
+  require(within(options.place_x) && within(options.place_y), "a sample's place in its sub-pixel is within 0 and 1");
   require_valid(profile);
   const Length pitch = profile.pixel_pitch / static_cast<double>(options.subsamples);
   require_valid_grid({columns * options.subsamples, rows * options.subsamples, pitch, pitch});
@@ -20,7 +22,7 @@ LightSpread light_spread(std::size_t columns, std::size_t rows, const PrinterPro
 GrayImage spread_light(const GrayImage& image, const PrinterProfile& profile, const ProcessOptions& options) {
   require_valid(image);
   const LightSpread spread = light_spread(image.columns, image.rows, profile, options);
-  return std::visit([&](const auto& kernel) { return kernel.apply(image, {}); }, spread);
+  return std::visit([&](const auto& kernel) { return kernel.apply(image, LightPart::Value, {}); }, spread);
 }
 
 }  // namespace mezzotint

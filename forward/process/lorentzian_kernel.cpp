@@ -93,23 +93,29 @@ std::vector<double> weights_of(const Corner& corner, double whole, const WeightP
 
 }  // namespace
 
-double LorentzianKernel::corner(double x, double y) const {
-  return std::atan(x * y / (width * std::sqrt(x * x + y * y + width * width))) / (2.0 * std::numbers::pi);
+double LorentzianKernel::corner(LightPart part, double x, double y) const {
+  const double w2 = width * width, xx = x * x + w2, yy = y * y + w2, r = std::sqrt(xx + y * y);
+  constexpr double turn = 2.0 * std::numbers::pi;
+  switch (part) {
+    case LightPart::Value:
+      return std::atan(x * y / (width * r)) / turn;
+    case LightPart::WidthSlope:
+      return -x * y * (r * r + w2) / (r * xx * yy) / turn;
+    // Where the sample moves one way, the corner moves the other.
+    case LightPart::SlopeX:
+      return -width * y / (xx * r) / turn;
+    case LightPart::SlopeY:
+      break;
+  }
+  return -width * x / (yy * r) / turn;
 }
 
-double LorentzianKernel::corner_slope(double x, double y) const {
-  const double w2 = width * width, xx = x * x + w2, yy = y * y + w2, square = xx + y * y;
-  return -x * y * (square + w2) / (std::sqrt(square) * xx * yy) / (2.0 * std::numbers::pi);
-}
-
-std::vector<double> lorentzian_weights(const LorentzianKernel& kernel, KernelPart part, const WeightPlane& plane) {
+std::vector<double> lorentzian_weights(const LorentzianKernel& kernel, LightPart part, const WeightPlane& plane) {
   const double reach = near_reach(plane, kernel.width);
   const int copies_x = plane.periodic ? copies(plane.columns, reach) : 0;
   const int copies_y = plane.periodic ? copies(plane.rows, reach) : 0;
-  if (part == KernelPart::Value)
-    return weights_of([&kernel](double x, double y) { return kernel.corner(x, y); }, 1.0, plane, copies_x, copies_y);
-  return weights_of([&kernel](double x, double y) { return kernel.corner_slope(x, y); }, 0.0, plane, copies_x,
-                    copies_y);
+  return weights_of([&](double x, double y) { return kernel.corner(part, x, y); }, part == LightPart::Value ? 1.0 : 0.0,
+                    plane, copies_x, copies_y);
 }
 
 }  // namespace mezzotint

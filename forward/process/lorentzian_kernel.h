@@ -3,21 +3,20 @@
 #include <cstddef>
 #include <vector>
 
+#include "forward/process/gaussian_spread.h"
+
 /// Inside of forward/process.
 
 namespace mezzotint {
 
-/// Light from a rectangle of even brightness 1 under the kernel w/(2π (r² + w²)^(3/2)), seen from the origin, and its
-/// derivative toward w. In closed form: differences of atan(x·y/(w·√(x² + y² + w²)))/2π at the corners.
+/// Light from a rectangle of even brightness 1 under the kernel w/(2π (r² + w²)^(3/2)), seen from the origin:
+/// differences of atan(x·y/(w·√(x² + y² + w²)))/2π at its corners; and its derivatives, toward w and toward where it is
+/// seen from.
 struct LorentzianKernel {
   double width;  ///< in pixels, as all lengths here
 
-  [[nodiscard]] double corner(double x, double y) const;
-  [[nodiscard]] double corner_slope(double x, double y) const;
+  [[nodiscard]] double corner(LightPart part, double x, double y) const;
 };
-
-/// Which of the two.
-enum class KernelPart { Value, WidthSlope };
 
 /// Where a sample lies, and the pixels around it.
 struct WeightPlane {
@@ -30,8 +29,8 @@ struct WeightPlane {
 /// the plane.
 ///
 /// Periodic  the nearest copies of each pixel are added, and what lies beyond as if it were smeared out.
-/// Sum       1 (0 for the slope) where periodic; less where not.
-[[nodiscard]] std::vector<double> lorentzian_weights(const LorentzianKernel& kernel, KernelPart part,
+/// Sum       1 (0 for a derivative) where periodic; less where not.
+[[nodiscard]] std::vector<double> lorentzian_weights(const LorentzianKernel& kernel, LightPart part,
                                                      const WeightPlane& plane);
 
 }  // namespace mezzotint

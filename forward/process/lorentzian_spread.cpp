@@ -36,7 +36,7 @@ LorentzianSpread::LorentzianSpread(std::size_t columns, std::size_t rows, double
   if (bytes > most_kept_bytes) return;
   std::vector<Spectrum> spectra(phases());
   tbb::parallel_for(std::size_t{0}, phases(),
-                    [&](std::size_t phase) { spectra[phase] = kernel_spectrum(phase, KernelPart::Value); });
+                    [&](std::size_t phase) { spectra[phase] = kernel_spectrum(phase, LightPart::Value); });
   kept_ = std::move(spectra);
 }
 
@@ -54,13 +54,14 @@ LorentzianSpread::Spectrum LorentzianSpread::image_spectrum(const GrayImage& ima
   return {fft.spectrum().begin(), fft.spectrum().end()};
 }
 
-LorentzianSpread::Spectrum LorentzianSpread::kernel_spectrum(std::size_t phase, KernelPart part) const {
-  if (part == KernelPart::Value && !kept_.empty()) return kept_[phase];
-  const auto position = [this](std::size_t s) {
-    return (static_cast<double>(s) + 0.5) / static_cast<double>(options_.subsamples);
+LorentzianSpread::Spectrum LorentzianSpread::kernel_spectrum(std::size_t phase, LightPart part) const {
+  if (part == LightPart::Value && !kept_.empty()) return kept_[phase];
+  const auto place = [this](std::size_t sub_pixel, double within) {
+    return (static_cast<double>(sub_pixel) + within) / static_cast<double>(options_.subsamples);
   };
-  const WeightPlane seen{plane_columns_, plane_rows_, position(phase % options_.subsamples),
-                         position(phase / options_.subsamples), options_.surround != Surround::Dark};
+  const std::size_t sub_row = phase / options_.subsamples, sub_column = phase % options_.subsamples;
+  const WeightPlane seen{plane_columns_, plane_rows_, place(sub_column, options_.place_x),
+                         place(sub_row, options_.place_y), options_.surround != Surround::Dark};
   const std::vector<double> weights = lorentzian_weights({width_}, part, seen);
   RealFft2d fft = plane();
   std::ranges::copy(weights, fft.real().begin());
@@ -69,7 +70,7 @@ LorentzianSpread::Spectrum LorentzianSpread::kernel_spectrum(std::size_t phase, 
 }
 
 // A sample sees the pixels around it: a correlation with the weights.
-GrayImage LorentzianSpread::correlate(const GrayImage& image, KernelPart part) const {
+GrayImage LorentzianSpread::apply(const GrayImage& image, LightPart part, const RowFinish& finish) const {
   const std::size_t n = options_.subsamples;
   GrayImage light{columns_ * n, rows_ * n, {}};
   light.values.resize(light.columns * light.rows);
@@ -85,11 +86,6 @@ GrayImage LorentzianSpread::correlate(const GrayImage& image, KernelPart part) c
       for (std::size_t column = 0; column < columns_; ++column) out[column * n] = static_cast<float>(in[column]);
     }
   });
-  return light;
-}
-
-GrayImage LorentzianSpread::apply(const GrayImage& image, const RowFinish& finish) const {
-  GrayImage light = correlate(image, KernelPart::Value);
   if (!finish) return light;
   tbb::parallel_for(std::size_t{0}, light.rows, [&](std::size_t row) {
     finish({light.values.data() + row * light.columns, light.columns});
@@ -97,12 +93,8 @@ GrayImage LorentzianSpread::apply(const GrayImage& image, const RowFinish& finis
   return light;
 }
 
-GrayImage LorentzianSpread::apply_width_slope(const GrayImage& image) const {
-  return correlate(image, KernelPart::WidthSlope);
-}
-
 // Phase after phase, so that the sum has one order.
-GrayImage LorentzianSpread::transposed(const GrayImage& samples) const {
+GrayImage LorentzianSpread::transposed(const GrayImage& samples, LightPart part) const {
   const std::size_t n = options_.subsamples;
   RealFft2d fft = plane();
   Spectrum sum(fft.spectrum().size());
@@ -114,7 +106,7 @@ GrayImage LorentzianSpread::transposed(const GrayImage& samples) const {
       for (std::size_t column = 0; column < columns_; ++column) out[column] = static_cast<double>(in[column * n]);
     }
     fft.forward();
-    const Spectrum kernel = kernel_spectrum(phase, KernelPart::Value);
+    const Spectrum kernel = kernel_spectrum(phase, part);
     for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += kernel[k] * fft.spectrum()[k];
   }
   std::ranges::copy(sum, fft.spectrum().begin());

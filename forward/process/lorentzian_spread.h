@@ -26,11 +26,8 @@ public:
   /// @throws InvalidInput for a side of more than 32768 pixels.
   LorentzianSpread(std::size_t columns, std::size_t rows, double width_pixels, const ProcessOptions& options);
 
-  [[nodiscard]] GrayImage apply(const GrayImage& image, const RowFinish& finish) const;
-  /// d apply / d width, a pixel of width.
-  [[nodiscard]] GrayImage apply_width_slope(const GrayImage& image) const;
-  /// The transposed operator: from samples to pixels.
-  [[nodiscard]] GrayImage transposed(const GrayImage& samples) const;
+  [[nodiscard]] GrayImage apply(const GrayImage& image, LightPart part, const RowFinish& finish) const;
+  [[nodiscard]] GrayImage transposed(const GrayImage& samples, LightPart part) const;
 
 private:
   using Spectrum = std::vector<std::complex<double>>;
@@ -38,8 +35,7 @@ private:
   [[nodiscard]] RealFft2d plane() const { return RealFft2d(plane_columns_, plane_rows_); }
   [[nodiscard]] std::size_t phases() const { return options_.subsamples * options_.subsamples; }
   [[nodiscard]] Spectrum image_spectrum(const GrayImage& image) const;
-  [[nodiscard]] Spectrum kernel_spectrum(std::size_t phase, KernelPart part) const;
-  [[nodiscard]] GrayImage correlate(const GrayImage& image, KernelPart part) const;
+  [[nodiscard]] Spectrum kernel_spectrum(std::size_t phase, LightPart part) const;
   [[nodiscard]] GrayImage folded(std::span<const double> plane) const;
 
   std::size_t columns_, rows_;

@@ -19,39 +19,38 @@ double cut_integral_slope(double z) {
   return -z * std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
 }
 
-template <class Integral>
-PixelTaps taps_at(double position, double sigma_pixels, double scale, const Integral& integral) {
+// The integrand, which is the slope toward the place: minus, since the pixels move the other way.
+double cut_density(double z) {
+  return std::abs(z) < cut_sigmas ? -std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi) : 0.0;
+}
+
+double antiderivative(TapKind kind, double z) {
+  if (kind == TapKind::Value) return cut_integral(z);
+  return kind == TapKind::WidthSlope ? cut_integral_slope(z) : cut_density(z);
+}
+
+PixelTaps taps_at(TapKind kind, double position, double sigma_pixels) {
   const double reach = cut_sigmas * sigma_pixels;
+  const double whole = 2.0 * cut_integral(cut_sigmas) * (kind == TapKind::Value ? 1.0 : sigma_pixels);
   const int first = static_cast<int>(std::floor(position - reach));
   const int last = static_cast<int>(std::ceil(position + reach)) - 1;
   PixelTaps taps{first, {}};
   for (int pixel = first; pixel <= last; ++pixel) {
-    const double share = integral((pixel + 1 - position) / sigma_pixels) - integral((pixel - position) / sigma_pixels);
-    taps.weights.push_back(static_cast<float>(share * scale));
+    const double share = antiderivative(kind, (pixel + 1 - position) / sigma_pixels) -
+                         antiderivative(kind, (pixel - position) / sigma_pixels);
+    taps.weights.push_back(static_cast<float>(share / whole));
   }
   return taps;
 }
 
-template <class Integral>
-std::vector<PixelTaps> all_taps(double sigma_pixels, std::size_t subsamples, double scale, const Integral& integral) {
-  std::vector<PixelTaps> all;
-  for (std::size_t s = 0; s < subsamples; ++s) {
-    const double position = (static_cast<double>(s) + 0.5) / static_cast<double>(subsamples);
-    all.push_back(taps_at(position, sigma_pixels, scale, integral));
-  }
-  return all;
-}
-
 }  // namespace
 
-std::vector<PixelTaps> pixel_taps(double sigma_pixels, std::size_t subsamples) {
-  if (sigma_pixels <= 0.0) return std::vector<PixelTaps>(subsamples, {0, {1.0F}});
-  return all_taps(sigma_pixels, subsamples, 0.5 / cut_integral(cut_sigmas), cut_integral);
-}
-
-std::vector<PixelTaps> pixel_tap_slopes(double sigma_pixels, std::size_t subsamples) {
-  if (sigma_pixels <= 0.0) return std::vector<PixelTaps>(subsamples, {0, {0.0F}});
-  return all_taps(sigma_pixels, subsamples, 0.5 / cut_integral(cut_sigmas) / sigma_pixels, cut_integral_slope);
+std::vector<PixelTaps> pixel_taps(TapKind kind, double sigma_pixels, std::size_t subsamples, double place) {
+  if (sigma_pixels <= 0.0) return std::vector<PixelTaps>(subsamples, {0, {kind == TapKind::Value ? 1.0F : 0.0F}});
+  std::vector<PixelTaps> all;
+  for (std::size_t s = 0; s < subsamples; ++s)
+    all.push_back(taps_at(kind, (static_cast<double>(s) + place) / static_cast<double>(subsamples), sigma_pixels));
+  return all;
 }
 
 }  // namespace mezzotint

@@ -11,11 +11,13 @@ struct PixelTaps {
   std::vector<float> weights;
 };
 
-/// The taps of every sub-pixel position s, at (s + ½)/subsamples of a pixel: integrals of a Gaussian of
-/// `sigma_pixels` over the pixels around, cut at 5σ, summing to 1. Without blur the pixel's own value.
-[[nodiscard]] std::vector<PixelTaps> pixel_taps(double sigma_pixels, std::size_t subsamples);
+/// The taps themselves; their derivative toward σ, a pixel of σ; and toward the place along the axis, a pixel of way.
+enum class TapKind { Value, WidthSlope, PlaceSlope };
 
-/// Their derivatives toward σ, in 1/pixel, at the same places; zero without blur.
-[[nodiscard]] std::vector<PixelTaps> pixel_tap_slopes(double sigma_pixels, std::size_t subsamples);
+/// The taps of every sub-pixel position s, at (s + place)/subsamples of a pixel: integrals of a Gaussian of
+/// `sigma_pixels` over the pixels around, cut at 5σ; values sum to 1, derivatives to 0. Without blur the pixel's own
+/// value, and no derivative.
+[[nodiscard]] std::vector<PixelTaps> pixel_taps(TapKind kind, double sigma_pixels, std::size_t subsamples,
+                                                double place = 0.5);
 
 }  // namespace mezzotint

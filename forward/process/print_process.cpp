@@ -23,12 +23,15 @@ struct PrintProcess::Parts {
                 " pixels; this one has " + std::to_string(image.columns) + " × " + std::to_string(image.rows));
     require_valid(image);
   }
-  [[nodiscard]] GrayImage light(const GrayImage& image, const RowFinish& finish) const {
-    return std::visit([&](const auto& kernel) { return kernel.apply(image, finish); }, spread);
+  [[nodiscard]] GrayImage light(const GrayImage& image, LightPart part, const RowFinish& finish = {}) const {
+    return std::visit([&](const auto& kernel) { return kernel.apply(image, part, finish); }, spread);
+  }
+  [[nodiscard]] std::vector<float> back(const GrayImage& samples, LightPart part) const {
+    return std::visit([&](const auto& kernel) { return kernel.transposed(samples, part).values; }, spread);
   }
   [[nodiscard]] GrayImage checked_light(const GrayImage& image, std::span<const float> height_slopes) const {
     require_image(image);
-    GrayImage arrived = light(image, {});
+    GrayImage arrived = light(image, LightPart::Value);
     require(height_slopes.size() == arrived.values.size(), "one slope a sample of the printed relief is needed");
     return arrived;
   }
@@ -101,7 +104,7 @@ HeightField PrintProcess::print(const GrayImage& image) const {
   const Parts& parts = *parts_;
   parts.require_image(image);
   const FastCure curve = fast_cure(parts.profile.cure, parts.profile.layer);
-  GrayImage heights_um = parts.light(image, [&curve](std::span<float> row) { cure(row, curve); });
+  GrayImage heights_um = parts.light(image, LightPart::Value, [&curve](std::span<float> row) { cure(row, curve); });
   const Length pitch = parts.profile.pixel_pitch / static_cast<double>(parts.options.subsamples);
   const bool repeats = parts.options.surround == Surround::Repeat;
   return HeightField({heights_um.columns, heights_um.rows, pitch, pitch},
@@ -114,7 +117,7 @@ std::vector<float> PrintProcess::gray_slopes(const GrayImage& image, std::span<c
   parts.for_each_row(light, height_slopes, [&](std::size_t, std::span<float> row, std::span<const float> slopes) {
     lead_back(row, slopes, parts.profile);
   });
-  return std::visit([&](const auto& kernel) { return kernel.transposed(light).values; }, parts.spread);
+  return parts.back(light, LightPart::Value);
 }
 
 ProfileSlopes PrintProcess::profile_slopes(const GrayImage& image, std::span<const float> height_slopes) const {
@@ -131,10 +134,50 @@ ProfileSlopes PrintProcess::profile_slopes(const GrayImage& image, std::span<con
     sum.beta_um += row.beta_um;
     sum.gamma += row.gamma;
   }
-  const GrayImage widening =
-      std::visit([&](const auto& kernel) { return kernel.apply_width_slope(image); }, parts.spread);
-  sum.width_um = dot(light, widening) / parts.profile.pixel_pitch.um();
+  sum.width_um = dot(light, parts.light(image, LightPart::WidthSlope)) / parts.profile.pixel_pitch.um();
   return sum;
+}
+
+ReliefSlopes PrintProcess::slopes(const GrayImage& image) const {
+  const Parts& parts = *parts_;
+  parts.require_image(image);
+  const GrayImage light = parts.light(image, LightPart::Value);
+  ReliefSlopes slopes{parts.light(image, LightPart::SlopeX).values, parts.light(image, LightPart::SlopeY).values};
+  const MovingLight moving = moving_light(parts.profile);
+  const CureCurve& curve = parts.profile.cure;
+  const auto steepness = static_cast<float>(curve.beta / parts.profile.pixel_pitch);
+  const auto gamma = static_cast<float>(curve.gamma);
+  for (std::size_t i = 0; i < light.values.size(); ++i) {
+    const float gray = light.values[i];
+    const bool moves = gray > moving.from && gray < moving.to;
+    const float factor = moves ? steepness / (gray - gamma) : 0.0F;
+    slopes.x[i] *= factor;
+    slopes.y[i] *= factor;
+  }
+  return slopes;
+}
+
+// z_x = β I_x/(I − γ): toward I_x by β/(I − γ), toward I by −z_x/(I − γ).
+std::vector<float> PrintProcess::gray_slopes(const GrayImage& image, const ReliefSlopes& toward) const {
+  const Parts& parts = *parts_;
+  GrayImage light = parts.checked_light(image, toward.x);
+  require(toward.y.size() == toward.x.size(), "one slope a sample of the printed relief is needed");
+  GrayImage light_x = parts.light(image, LightPart::SlopeX), light_y = parts.light(image, LightPart::SlopeY);
+  const MovingLight moving = moving_light(parts.profile);
+  const auto steepness = static_cast<float>(parts.profile.cure.beta / parts.profile.pixel_pitch);
+  const auto gamma = static_cast<float>(parts.profile.cure.gamma);
+  for (std::size_t i = 0; i < light.values.size(); ++i) {
+    const float gray = light.values[i];
+    const bool moves = gray > moving.from && gray < moving.to;
+    const float per_dose = moves ? 1.0F / (gray - gamma) : 0.0F, factor = steepness * per_dose;
+    light.values[i] = -factor * per_dose * (toward.x[i] * light_x.values[i] + toward.y[i] * light_y.values[i]);
+    light_x.values[i] = factor * toward.x[i];
+    light_y.values[i] = factor * toward.y[i];
+  }
+  std::vector<float> slopes = parts.back(light, LightPart::Value);
+  const std::vector<float> by_x = parts.back(light_x, LightPart::SlopeX), by_y = parts.back(light_y, LightPart::SlopeY);
+  for (std::size_t i = 0; i < slopes.size(); ++i) slopes[i] += by_x[i] + by_y[i];
+  return slopes;
 }
 
 std::vector<float> wanted_height_slopes(const HeightField& pixel_heights, const PrinterProfile& profile,

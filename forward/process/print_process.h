@@ -43,6 +43,14 @@ public:
   /// The same toward the cure curve and the width of the blur; for calibration.
   [[nodiscard]] ProfileSlopes profile_slopes(const GrayImage& image, std::span<const float> height_slopes) const;
 
+  /// The relief's own slopes at the samples, from the derivatives of the light: exact at the point, where differences
+  /// of heights are means over a sub-pixel. 0 where nothing cures, and where the layer's thickness cuts.
+  /// @throws InvalidInput for an image that is invalid or of another size.
+  [[nodiscard]] ReliefSlopes slopes(const GrayImage& image) const;
+
+  /// From ∂J/∂(slopes of the relief) to ∂J/∂(gray value): the adjoint of `slopes`.
+  [[nodiscard]] std::vector<float> gray_slopes(const GrayImage& image, const ReliefSlopes& toward) const;
+
 private:
   struct Parts;
   std::unique_ptr<const Parts> parts_;

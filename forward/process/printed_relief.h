@@ -2,9 +2,15 @@
 
 #include <cstdint>
 
+#include "forward/pattern/pattern_kinds.h"
 #include "forward/process/gray_image.h"
 
 namespace mezzotint {
+
+/// ∂z/∂x and ∂z/∂y of a relief, one each a sample; or the slopes of a scalar J toward them.
+struct ReliefSlopes {
+  std::vector<float> x, y;
+};
 
 /// What surrounds the patch in the projector's image.
 enum class Surround {
@@ -16,6 +22,8 @@ enum class Surround {
 struct ProcessOptions {
   std::size_t subsamples = 4;  ///< samples a pixel and axis of the printed relief, 1…16
   Surround surround = Surround::Mirror;
+  double place_x = 0.5;  ///< where a sample stands within its sub-pixel, 0 … 1; ½ is its middle
+  double place_y = 0.5;
 };
 
 /// The light that arrives at the resin: each pixel a square of its gray value, spread by the profile's
@@ -55,6 +63,12 @@ struct GroundSplit {
 /// Missing samples stay missing.
 void add_ground(HeightField& relief, const PrinterProfile& profile, const std::vector<GroundOctave>& octaves,
                 std::uint64_t seed);
+
+/// ∂z/∂x and ∂z/∂y of the same ground at single points: samples of a grid whose first one stands at `first`, drawn as
+/// add_ground draws it from (0, 0) on.
+/// Accuracy 3e-4 of an octave of 25 µm: central differences over 0.2 µm.
+[[nodiscard]] ReliefSlopes ground_slopes(const Grid& grid, const Position& first, const PrinterProfile& profile,
+                                         const std::vector<GroundOctave>& octaves, std::uint64_t seed);
 
 /// Closed-form RMS slope of the given octaves along any axis: amplitude·√(Σ(w/scale)² · 0.8365/2).
 [[nodiscard]] double ground_rms_slope(const PrinterProfile& profile, const std::vector<GroundOctave>& octaves);

@@ -10,7 +10,7 @@
 
 namespace mezzotint {
 
-/// Which pixel stands at `index`, that may lie outside of 0…count−1; none where it is dark.
+/// Which pixel stands at `index`, that may lie outside of 0…count−1 (count ≥ 1); none where it is dark.
 [[nodiscard]] inline std::optional<std::size_t> pixel_at(std::int64_t index, std::size_t count, Surround surround) {
   const auto n = static_cast<std::int64_t>(count);
   if (index >= 0 && index < n) return static_cast<std::size_t>(index);

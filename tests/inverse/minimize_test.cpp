@@ -86,6 +86,22 @@ TEST(Minimize, TreatsWhatIsNotFiniteAsWorseThanEverything) {
   EXPECT_THROW((void)minimize(plane, blind, {.max_evaluations = 20}), MethodError);
 }
 
+TEST(Minimize, FollowsSlopesThatTheObjectiveKnows) {
+  const auto steep = [](const std::vector<double>& p, std::vector<double>& slopes) {
+    slopes = {2.0 * std::log(p[0] / 7.0) / p[0], 2.0 * (p[1] + 30.0) / 8100.0};
+    return valley(p);
+  };
+  for (const char* name : {"LD_MMA", "LD_LBFGS", "LD_SLSQP", "LD_CCSAQ"}) {
+    const MinimizeOptions options{.algorithm = name, .max_evaluations = 200, .relative_tolerance = 1e-6};
+    const MinimizeResult result = minimize_with_slopes(plane, steep, options);
+    EXPECT_NEAR(result.best.values[0], 7.0, 0.01) << name;
+    EXPECT_NEAR(result.best.values[1], -30.0, 0.1) << name;
+    // Differences would take five evaluations a step.
+    EXPECT_LT(result.evaluations, minimize(plane, valley, options).evaluations) << name;
+  }
+  EXPECT_THROW((void)minimize_with_slopes(plane, steep, {.algorithm = "LN_BOBYQA"}), InvalidInput);
+}
+
 TEST(Minimize, RefusesWhatMakesNoSense) {
   EXPECT_THROW((void)minimize({}, valley, {}), InvalidInput);
   EXPECT_THROW((void)minimize(plane, valley, {.algorithm = "BOBYQA"}), InvalidInput);

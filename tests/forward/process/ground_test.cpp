@@ -119,5 +119,26 @@ TEST(AddGround, RefusesOctavesWithoutAScale) {
   EXPECT_THROW(add_ground(field, PrinterProfile{}, {{1.0, Length{}}}, 1), InvalidInput);
 }
 
+TEST(Ground, SlopesAtPointsAreThoseOfTheReliefThere) {
+  const PrinterProfile profile;
+  const std::vector<GroundOctave> octaves = split_ground(profile, 550.0_nm).geometric;
+  // Samples of half a micrometre: differences over one micrometre leave (kh)²/6 of a slope, 3 % of the octave of 25 µm.
+  const Grid fine{400, 300, 0.5_um, 0.5_um};
+  HeightField relief(fine, Continuation::Mirrored);
+  add_ground(relief, profile, octaves, 7);
+  const Grid points{40, 30, 4.0_um, 4.0_um};
+  const ReliefSlopes slopes = ground_slopes(points, {10.0_um, 20.0_um}, profile, octaves, 7);
+  double difference = 0.0, whole = 0.0;
+  for (std::size_t row = 0; row < 30; ++row) {
+    for (std::size_t column = 0; column < 40; ++column) {
+      const std::size_t c = 20 + 8 * column, r = 40 + 8 * row;
+      const double expected = double(relief.at(c + 1, r)) - double(relief.at(c - 1, r));
+      difference += std::pow(double(slopes.x[row * 40 + column]) - expected, 2);
+      whole += expected * expected;
+    }
+  }
+  EXPECT_LT(std::sqrt(difference / whole), 0.02);
+}
+
 }  // namespace
 }  // namespace mezzotint

@@ -115,6 +115,62 @@ TEST(PrintProcess, TellsTheSlopeTowardCureCurveAndBlur) {
   }
 }
 
+TEST(PrintProcess, ItsSlopesAreThoseOfTheRelief) {
+  for (const Case& c : cases()) {
+    if (c.surround == Surround::Dark) continue;  // the threshold's cliff runs along its edges
+    PrinterProfile profile;
+    profile.spread = c.spread;
+    const GrayImage image = curing_image();
+    const auto at = [&](double place_x, double place_y) {
+      return PrintProcess(columns, rows, profile, {2, c.surround, place_x, place_y});
+    };
+    const ReliefSlopes slopes = at(0.3, 0.6).slopes(image);
+    const HeightField left = at(0.25, 0.6).print(image), right = at(0.35, 0.6).print(image);
+    const HeightField low = at(0.3, 0.55).print(image), high = at(0.3, 0.65).print(image);
+    const double way_um = 0.1 * 7.54 / 2.0;
+    // Float heights (2e-6 µm over 0.38 µm) and the third derivative, (0.19/σ)²/6 of slopes of about 1.
+    for (std::size_t i = 0; i < slopes.x.size(); ++i) {
+      ASSERT_NEAR(slopes.x[i], (right.heights_um()[i] - left.heights_um()[i]) / way_um, 4e-3) << c.name;
+      ASSERT_NEAR(slopes.y[i], (high.heights_um()[i] - low.heights_um()[i]) / way_um, 4e-3) << c.name;
+    }
+  }
+}
+
+TEST(PrintProcess, LeadsBackFromSlopesToEveryGrayValue) {
+  for (const Case& c : cases()) {
+    PrinterProfile profile;
+    profile.spread = c.spread;
+    const PrintProcess process(columns, rows, profile, {3, c.surround, 0.2, 0.9});
+    const ReliefSlopes toward{random_values(9 * columns * rows, -1.0, 1.0, 5),
+                              random_values(9 * columns * rows, -1.0, 1.0, 6)};
+    const GrayImage image = curing_image();
+    const std::vector<float> gradient = process.gray_slopes(image, toward);
+    const auto j = [&](const GrayImage& gray) {
+      const ReliefSlopes slopes = process.slopes(gray);
+      double sum = 0.0;
+      for (std::size_t i = 0; i < slopes.x.size(); ++i)
+        sum += double(toward.x[i]) * double(slopes.x[i]) + double(toward.y[i]) * double(slopes.y[i]);
+      return sum;
+    };
+    const std::vector<float> direction = random_values(image.values.size(), -1.0, 1.0, 21);
+    const auto difference = [&](float step) {
+      GrayImage up = image, down = image;
+      for (std::size_t i = 0; i < direction.size(); ++i) {
+        up.values[i] += step * direction[i];
+        down.values[i] -= step * direction[i];
+      }
+      return (j(up) - j(down)) / (2.0 * double(step));
+    };
+    const double expected = (4.0 * difference(0.01F) - difference(0.02F)) / 3.0;
+    double found = 0.0, size = 0.0;
+    for (std::size_t i = 0; i < direction.size(); ++i) {
+      found += double(gradient[i]) * double(direction[i]);
+      size += std::pow(double(gradient[i]), 2);
+    }
+    EXPECT_NEAR(found, expected, 1e-4 * std::sqrt(size)) << c.name;
+  }
+}
+
 TEST(PrintProcess, StandsStillWhereNothingCuresAndWhereTheLayerEnds) {
   PrinterProfile profile;
   profile.cure = scale_exposure(profile.cure, 3.0);  // the layer of 18 µm is full at gray .34

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "forward/base/progress.h"
+#include "forward/process/print_process.h"
+#include "inverse/minimize.h"
+#include "inverse/objective/lobe_distance.h"
+#include "inverse/objective/smooth_lobe.h"
+
+namespace mezzotint {
+
+/// Lobes that a printed tile should show: reflection maps in soft bins for some directions of the light, by single
+/// reflection without shadows.
+struct SoftGoal {
+  SmoothGrid grid;
+  Material material;
+  std::vector<DirectionAngles> incidences;
+  std::vector<DirectionMap> maps;  ///< one an incidence
+};
+
+/// A goal from maps of hard bins, such as a painted or a measured lobe. With `any_brightness` each map is scaled to the
+/// light that a flat surface of the material would reflect: a painting has no unit.
+/// @throws InvalidInput for maps that do not fit, or that are dark.
+[[nodiscard]] SoftGoal soft_goal(const DirectionGrid& grid, const Material& material,
+                                 const std::vector<DirectionAngles>& incidences, const std::vector<DirectionMap>& maps,
+                                 bool any_brightness);
+
+struct FreeFormOptions {
+  std::size_t pixels = 128;    ///< a side of the periodic tile, 16 … 1024
+  int start_evaluations = 20;  ///< of each of three trials from every start
+  int evaluations = 200;       ///< from the best two, on the cube root
+  int evaluations_per_epoch = 25;
+  std::size_t fresh_draws = 4;  ///< other grounds and other places of the samples, for the verdict
+  std::string algorithm = "LD_MMA";
+  Length wavelength = Length::from_nm(550.0);
+  std::uint64_t seed = 1;
+};
+
+/// A distance to the goal on draws that the search has not seen.
+struct FreshDistance {
+  LobeDistance distance;
+  double value = 0.0;  ///< mean over directions of the light
+};
+
+/// A relief without a pattern.
+struct FreeForm {
+  GrayImage gray;                    ///< of the tile, rounded to the printer's levels
+  std::string start;                 ///< the shape that it grew from, in words
+  std::vector<double> history;       ///< cube-root distance of every evaluation from the best start
+  double on_search_draws = 0.0;      ///< cube-root distance in the last epoch, gray levels continuous
+  std::vector<FreshDistance> fresh;  ///< all distances, on fresh draws, as printed
+  int evaluations = 0;
+};
+
+/// Every pixel of a periodic tile a variable: the gray image whose print comes closest to a goal.
+///
+/// Method   wanted heights between the threshold and the top of the layer → gray → light → cure height → ground →
+///          slopes → soft bins, and back by the adjoint. From several start shapes on the Wasserstein distance, which
+///          sees how far light has to go; then from the best two on the cube root. In every epoch the relief is sampled
+///          at other places (3, 4 or 5 a pixel) and has other grounds, so that nothing can hide between samples.
+/// @throws InvalidInput for options out of range, or a goal without directions.
+[[nodiscard]] FreeForm find_free_form(const SoftGoal& goal, const PrinterProfile& printer,
+                                      const FreeFormOptions& options, const Progress& progress = {});
+
+}  // namespace mezzotint
