@@ -64,11 +64,13 @@ void level_by(Correction& c, const std::string& v) {
   const std::size_t colon = v.find(':');
   const std::string kind = v.substr(0, colon);
   const int degree = colon == std::string::npos ? 5 : std::stoi(v.substr(colon + 1));
-  if (kind == "plane") return set(c, level(c.field), "levelled by the least-squares plane");
-  if (kind == "poly")
-    return set(c, subtract_polynomial(c.field, fit_polynomial(c.field, degree)),
+  if (kind == "plane") return set(c, level(std::move(c.field)), "levelled by the least-squares plane");
+  if (kind == "poly") {
+    const SurfacePolynomial polynomial = fit_polynomial(c.field, degree);
+    return set(c, subtract_polynomial(std::move(c.field), polynomial),
                fmt::format("levelled by a polynomial of degree {}", degree));
-  FlattenedBase flat = flatten_base(c.field, degree);
+  }
+  FlattenedBase flat = flatten_base(std::move(c.field), degree);
   if (!flat.settled)
     c.warnings.push_back("the base did not settle: it may not be what most of the surface is; look at the result");
   set(c, std::move(flat.field),
@@ -105,16 +107,16 @@ const std::map<std::string, Step>& steps() {
        }},
       {"--outliers",
        [](Correction& c, const std::string& v) {
-         take_out(c, mask_outliers(c.field, std::stod(v)), "outliers beyond " + v + " standard deviations");
+         take_out(c, mask_outliers(std::move(c.field), std::stod(v)), "outliers beyond " + v + " standard deviations");
        }},
       {"--local-outliers",
        [](Correction& c, const std::string& v) {
-         take_out(c, mask_local_outliers(c.field, std::stod(v)),
+         take_out(c, mask_local_outliers(std::move(c.field), std::stod(v)),
                   "spikes beyond " + v + " robust deviations from the samples around");
        }},
       {"--fill",
        [](Correction& c, const std::string&) {
-         set(c, fill_missing(c.field), "missing samples filled by Laplace's equation");
+         set(c, fill_missing(std::move(c.field)), "missing samples filled by Laplace's equation");
        }},
       {"--s-filter",
        [](Correction& c, const std::string& v) {

@@ -49,6 +49,11 @@ public:
 
   /// Height of z = 0 in the frame of the instrument.
   [[nodiscard]] Length datum() const { return datum_; }
+  /// Says anew what lies beyond the ends and where z = 0 stands; for who has changed the heights in place.
+  void set_frame(Continuation continuation, Length datum) {
+    continuation_ = continuation;
+    datum_ = datum;
+  }
 
   [[nodiscard]] float at(std::size_t column, std::size_t row) const {
     return heights_um_[row * grid_.columns + column];

@@ -10,6 +10,6 @@ namespace mezzotint {
 /// How      holes of up to 48 samples one by one, the larger ones together: by a sparse Cholesky factor, or by
 ///          multigrid where there is more to fill (residual 1e-11). Time and memory in proportion to what is missing.
 /// @throws  InvalidInput when no sample was measured at all.
-[[nodiscard]] HeightField fill_missing(const HeightField& field);
+[[nodiscard]] HeightField fill_missing(HeightField field);
 
 }  // namespace mezzotint

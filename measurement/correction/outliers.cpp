@@ -3,16 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include "forward/base/error.h"
 #include "measurement/correction/plane.h"
+#include "measurement/correction/plane_rows.h"
+#include "measurement/correction/row_bands.h"
 
 namespace mezzotint {
 
@@ -20,30 +24,49 @@ namespace {
 
 constexpr float missing = std::numeric_limits<float>::quiet_NaN();
 
-// Of samples that were taken, how many have a neighbour along their row that was taken too.
-double share_in_company(const HeightField& before, const HeightField& after) {
-  std::size_t taken = 0, in_company = 0;
-  const auto is_taken = [&](std::size_t i) {
-    return std::isnan(after.heights_um()[i]) && !std::isnan(before.heights_um()[i]);
-  };
-  for (std::size_t row = 0; row < before.rows(); ++row) {
-    bool last = false, counted = false;
-    for (std::size_t column = 0; column < before.columns(); ++column) {
-      const bool now = is_taken(row * before.columns() + column);
-      taken += now ? 1 : 0;
-      if (now && last) in_company += counted ? 1 : 2;
-      counted = now && last;
-      last = now;
-    }
+// Of columns in ascending order, how many have a neighbour among them.
+std::size_t in_company(std::span<const std::uint32_t> columns) {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const bool left = k > 0 && columns[k] - columns[k - 1] == 1;
+    const bool right = k + 1 < columns.size() && columns[k + 1] - columns[k] == 1;
+    count += left || right ? 1 : 0;
   }
-  return taken > 0 ? static_cast<double>(in_company) / static_cast<double>(taken) : 0.0;
+  return count;
+}
+
+/// What was taken out, and how much of it has a neighbour along its row that was taken too.
+struct Taken {
+  std::size_t count = 0, in_company = 0;
+  Taken& operator+=(const Taken& other) {
+    count += other.count;
+    in_company += other.in_company;
+    return *this;
+  }
+};
+
+// find(row, columns): appends the columns of a row's outliers, in ascending order.
+template <class Find>
+Taken take_out(HeightField& field, const Find& find) {
+  return sum_of_bands(field.rows(), Taken{}, [&](std::size_t first, std::size_t end) {
+    Taken taken;
+    std::vector<std::uint32_t> columns;
+    for (std::size_t row = first; row < end; ++row) {
+      columns.clear();
+      find(row, columns);
+      for (const std::uint32_t column : columns) field.at(column, row) = missing;
+      taken += {columns.size(), in_company(columns)};
+    }
+    return taken;
+  });
 }
 
 // What errors of an instrument look like: few, and mostly alone. A feature is neither.
-void judge(const HeightField& before, OutlierResult& result) {
-  const auto measured = static_cast<double>(before.grid().size() - before.missing_count());
-  result.share = static_cast<double>(result.removed) / measured;
-  const double together = share_in_company(before, result.field);
+void judge(double measured, const Taken& taken, OutlierResult& result) {
+  result.removed = taken.count;
+  result.share = static_cast<double>(taken.count) / measured;
+  const double together =
+      taken.count > 0 ? static_cast<double>(taken.in_company) / static_cast<double>(taken.count) : 0.0;
   constexpr double many = 3.0, mostly = 0.7, noticeable = 1e-3;
   // Three times the scatter of a count, so that a few samples of a small field are no ground for a warning.
   const double by_chance = result.expected_share + 3.0 * std::sqrt(result.expected_share / measured);
@@ -95,29 +118,28 @@ double typical_size(const HeightField& field, const std::vector<float>& off) {
 
 }  // namespace
 
-OutlierResult mask_outliers(const HeightField& field, double k) {
+OutlierResult mask_outliers(HeightField field, double k) {
   require(k >= 1.0 && k <= 100.0,
           fmt::format("outliers lie between 1 and 100 standard deviations off; {} is outside", k));
-  const HeightField levelled = level(field);  // its mean is zero
-  double squares = 0.0, count = 0.0;
-  for (const float z : levelled.heights_um()) {
-    if (std::isnan(z)) continue;
-    squares += static_cast<double>(z) * z;
-    count += 1.0;
-  }
-  const double limit_um = k * std::sqrt(squares / count);
-  OutlierResult result{field};
-  for (std::size_t i = 0; i < field.grid().size(); ++i) {
-    if (!(std::abs(static_cast<double>(levelled.heights_um()[i])) > limit_um)) continue;
-    result.field.heights_um()[i] = missing;
-    ++result.removed;
-  }
+  const Plane plane = fit_plane(field);  // the mean above it is zero
+  const double squares = sum_of_bands(field.rows(), 0.0, [&](std::size_t first, std::size_t end) {
+    double sum = 0.0;
+    for (std::size_t row = first; row < end; ++row)
+      sum += squares_above_line(row_of(std::as_const(field), row), line_of(plane, field, row));
+    return sum;
+  });
+  const auto measured = static_cast<double>(field.grid().size() - field.missing_count());
+  const double limit_um = k * std::sqrt(squares / measured);
+  OutlierResult result{std::move(field)};
+  const Taken taken = take_out(result.field, [&](std::size_t row, std::vector<std::uint32_t>& columns) {
+    find_beyond(row_of(std::as_const(result.field), row), line_of(plane, result.field, row), limit_um, columns);
+  });
   result.expected_share = std::erfc(k / std::numbers::sqrt2);
-  judge(field, result);
+  judge(measured, taken, result);
   return result;
 }
 
-OutlierResult mask_local_outliers(const HeightField& field, double k) {
+OutlierResult mask_local_outliers(HeightField field, double k) {
   require(k >= 1.0 && k <= 1000.0,
           fmt::format("local outliers lie between 1 and 1000 standard deviations off; {} is outside", k));
   std::vector<float> off(field.grid().size());
@@ -125,15 +147,16 @@ OutlierResult mask_local_outliers(const HeightField& field, double k) {
     for (std::size_t column = 0; column < field.columns(); ++column)
       off[row * field.columns() + column] = std::abs(field.at(column, row) - median_around(field, column, row));
   });
-  OutlierResult result{field};
-  result.expected_share = std::erfc(k / std::numbers::sqrt2);
+  const auto measured = static_cast<double>(field.grid().size() - field.missing_count());
   const double limit_um = k * typical_size(field, off);
-  for (std::size_t i = 0; i < off.size(); ++i) {
-    if (!(static_cast<double>(off[i]) > limit_um)) continue;
-    result.field.heights_um()[i] = missing;
-    ++result.removed;
-  }
-  judge(field, result);
+  OutlierResult result{std::move(field)};
+  const Taken taken = take_out(result.field, [&](std::size_t row, std::vector<std::uint32_t>& columns) {
+    const std::size_t begin = row * result.field.columns();
+    for (std::size_t column = 0; column < result.field.columns(); ++column)
+      if (static_cast<double>(off[begin + column]) > limit_um) columns.push_back(static_cast<std::uint32_t>(column));
+  });
+  result.expected_share = std::erfc(k / std::numbers::sqrt2);
+  judge(measured, taken, result);
   return result;
 }
 
