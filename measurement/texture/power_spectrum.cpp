@@ -4,9 +4,10 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <numeric>
 
 #include "forward/base/error.h"
-#include "forward/base/fft.h"
+#include "measurement/texture/row_spectra.h"
 
 namespace mezzotint {
 
@@ -27,6 +28,24 @@ double sum_of_squares(const std::vector<double>& values) {
   return sum;
 }
 
+// Row by row, each weighted as a whole, so that the rounding of long sums stays small.
+double weighted_mean_um(const HeightField& field, const std::vector<double>& window_x,
+                        const std::vector<double>& window_y) {
+  std::vector<double> rows(field.rows());
+  tbb::parallel_for(std::size_t{0}, field.rows(), [&](std::size_t row) {
+    constexpr std::size_t lanes = 8;
+    double sums[lanes] = {};
+    const auto heights_um = field.heights_um().subspan(row * field.columns(), field.columns());
+    for (std::size_t c = 0; c < heights_um.size(); ++c)
+      sums[c % lanes] += window_x[c] * static_cast<double>(heights_um[c]);
+    rows[row] = window_y[row] * std::accumulate(std::begin(sums), std::end(sums), 0.0);
+  });
+  const auto total = [](const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0);
+  };
+  return total(rows) / (total(window_x) * total(window_y));
+}
+
 }  // namespace
 
 PowerSpectrum power_spectrum(const HeightField& field) {
@@ -34,33 +53,29 @@ PowerSpectrum power_spectrum(const HeightField& field) {
   require(columns >= 4 && rows >= 4, "a power spectrum needs 4 x 4 samples at least");
   require(field.missing_count() == 0, "a power spectrum needs every sample; fill the missing ones first");
   const std::vector<double> window_x = hann(columns, field.periodic()), window_y = hann(rows, field.periodic());
-  double mean = 0.0, weight = 0.0;
-  for (std::size_t row = 0; row < rows; ++row)
-    for (std::size_t column = 0; column < columns; ++column) {
-      const double w = window_x[column] * window_y[row];
-      mean += w * static_cast<double>(field.at(column, row));
-      weight += w;
-    }
-  mean /= weight;
-  RealFft2d fft(columns, rows);
-  for (std::size_t row = 0; row < rows; ++row)
-    for (std::size_t column = 0; column < columns; ++column)
-      fft.real()[row * columns + column] =
-          window_x[column] * window_y[row] * (static_cast<double>(field.at(column, row)) - mean);
-  fft.forward();
+  const double mean = weighted_mean_um(field, window_x, window_y);
+  RowSpectra spectra(rows, columns, [&](std::size_t row, std::span<double> line) {
+    const auto heights_um = field.heights_um().subspan(row * columns, columns);
+    for (std::size_t c = 0; c < columns; ++c)
+      line[c] = window_x[c] * window_y[row] * (static_cast<double>(heights_um[c]) - mean);
+  });
   PowerSpectrum result{columns, rows, field.grid().pitch_x, field.grid().pitch_y, std::vector<double>(columns * rows)};
   // |F|² · area of a sample ÷ Σ w².
   const double scale =
       field.grid().pitch_x.um() * field.grid().pitch_y.um() / (sum_of_squares(window_x) * sum_of_squares(window_y));
-  for (std::size_t row = 0; row < rows; ++row)
-    for (std::size_t column = 0; column < columns; ++column) {
-      std::size_t kx = (column + columns - columns / 2) % columns, ky = (row + rows - rows / 2) % rows;
-      if (kx >= fft.spectrum_columns()) {
-        kx = columns - kx;
-        ky = (rows - ky) % rows;
+  spectra.for_each_four_columns(rows, [&](std::size_t first, std::span<ComplexFftLine> lines, RealFftLine&) {
+    for (std::size_t ky = 0; ky < rows; ++ky) {
+      double* above = result.density_um4.data() + (ky + rows / 2) % rows * columns;
+      double* below = result.density_um4.data() + (rows - ky + rows / 2) % rows * columns;
+      for (std::size_t k = 0; k < lines.size(); ++k) {
+        const std::size_t kx = first + k;
+        const double density = scale * std::norm(lines[k].values()[ky]);
+        above[(kx + columns / 2) % columns] = density;
+        if (kx != 0 && 2 * kx != columns) below[(columns - kx + columns / 2) % columns] = density;
       }
-      result.density_um4[row * columns + column] = scale * std::norm(fft.spectrum()[ky * fft.spectrum_columns() + kx]);
     }
+    return std::size_t{0};
+  });
   return result;
 }
 
