@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "forward/base/error.h"
+#include "forward/surface/row_bands.h"
 #include "measurement/correction/plane_rows.h"
 #include "measurement/correction/polynomial_sums.h"
-#include "measurement/correction/row_bands.h"
 
 namespace mezzotint {
 

@@ -14,9 +14,9 @@
 #include <tbb/parallel_for.h>
 
 #include "forward/base/error.h"
+#include "forward/surface/row_bands.h"
 #include "measurement/correction/plane.h"
 #include "measurement/correction/plane_rows.h"
-#include "measurement/correction/row_bands.h"
 
 namespace mezzotint {
 

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "forward/base/error.h"
+#include "forward/surface/row_bands.h"
 #include "measurement/correction/plane_rows.h"
-#include "measurement/correction/row_bands.h"
 
 namespace mezzotint {
 

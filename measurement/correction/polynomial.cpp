@@ -5,9 +5,9 @@
 #include <string>
 
 #include "forward/base/error.h"
+#include "forward/surface/row_bands.h"
 #include "measurement/correction/plane_rows.h"
 #include "measurement/correction/polynomial_sums.h"
-#include "measurement/correction/row_bands.h"
 
 namespace mezzotint {
 

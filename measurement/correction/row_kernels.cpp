@@ -15,6 +15,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace mezzotint::HWY_NAMESPACE {
 
+namespace {
+
 namespace hn = hwy::HWY_NAMESPACE;
 using Doubles = hn::ScalableTag<double>;
 using Floats = hn::Rebind<float, Doubles>;
@@ -155,6 +157,8 @@ void any_chebyshev(std::size_t degree, const float* z, std::size_t count, RowPla
                    double* heights) {
   chebyshev_of_degree(std::make_index_sequence<13>(), degree, z, count, places, weights, heights);
 }
+
+}  // namespace
 
 }  // namespace mezzotint::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -6,7 +6,7 @@
 
 #include <tbb/parallel_for.h>
 
-/// Inside of measurement/correction: rows in bands of a fixed number, each the work of one thread, so that sums over
+/// Rows in bands of a fixed number, each the work of one thread, so that sums over
 /// bands come out the same with any number of threads.
 
 namespace mezzotint {
