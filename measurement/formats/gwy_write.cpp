@@ -1,11 +1,14 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "forward/base/error.h"
 #include "forward/base/file_output.h"
 #include "measurement/formats/gwy_field.h"
+#include "measurement/formats/little_endian_writer.h"
 #include "measurement/formats/surface_file.h"
 #include "measurement/formats/text_values.h"
 
@@ -26,6 +29,7 @@ public:
     for (std::size_t i = 0; i < sizeof value; ++i) bytes_.push_back(static_cast<char>(value >> (8 * i) & 0xFF));
   }
   void real(double value) { number(std::bit_cast<std::uint64_t>(value)); }
+  void reals(std::span<const double> values) { append_little_endian(bytes_, values); }
 
   /// Name, type and then the value, which the caller appends.
   void component(std::string_view name, char type) {
@@ -74,8 +78,10 @@ void write_field(GwyWriter& writer, std::string_view name, const Grid& grid, std
     write_unit(writer, "si_unit_z", unit);
     writer.component("data", 'D');
     writer.number(static_cast<std::uint32_t>(grid.size()));
+    std::vector<double> line(grid.columns);
     for (std::size_t row = grid.rows; row-- > 0;) {
-      for (std::size_t column = 0; column < grid.columns; ++column) writer.real(value(column, row));
+      for (std::size_t column = 0; column < grid.columns; ++column) line[column] = value(column, row);
+      writer.reals(line);
     }
   });
 }

@@ -94,5 +94,41 @@ TEST(BearingCurve, GoesFromTheHighestToTheLowest) {
   EXPECT_THROW(BearingCurve(std::vector<float>{1.0F, 2.0F, 3.0F}), InvalidInput);
 }
 
+// Of so many samples the curve is counted, not sorted. Two levels with a gap between them are no less sharp for it.
+TEST(BearingCurve, OfManySamplesIsTheSortedOneToABinOfItsRange) {
+  const HeightField noise = test::white_noise(test::micrometre_grid(512, 400), 4);
+  HeightField field = noise;
+  for (std::size_t i = 0; i < field.grid().size(); i += 3) field.heights_um()[i] += 20.0F;
+  const BearingCurve counted(field), sorted({field.heights_um().begin(), field.heights_um().end()});
+  const HeightRange range = height_range(field);
+  const double bin_um = (range.highest - range.lowest).um() / 65536.0;
+  for (double p = 0.0005; p < 1.0; p += 0.001) {
+    // Where the sorted curve steps from one height to the next, half a step of ratio is what the two may be apart.
+    const double half = 0.5 / static_cast<double>(field.grid().size());
+    EXPECT_LE(counted.height_um(p), sorted.height_um(p - 2.0 * half) + bin_um) << p;
+    EXPECT_GE(counted.height_um(p), sorted.height_um(p + 2.0 * half) - bin_um) << p;
+    EXPECT_NEAR(counted.integral_um(0.0, p), sorted.integral_um(0.0, p), bin_um) << p;
+  }
+  for (const double z : {-2.0, 0.0, 1.0, 10.0, 19.0, 21.5})
+    EXPECT_NEAR(counted.ratio(z), sorted.ratio(z), 2e-5) << z;  // four samples of 204800
+}
+
+TEST(FunctionalParameters, OfManySamplesAreThoseOfTheSortedCurve) {
+  // The same heights eleven times over: counted, while the single field is sorted.
+  const HeightField one = field_with(gaussian_quantile);
+  HeightField many(test::micrometre_grid(128, 128 * 11), Continuation::Mirrored);
+  for (std::size_t i = 0; i < many.grid().size(); ++i) many.heights_um()[i] = one.heights_um()[i % one.grid().size()];
+  const FunctionalParameters a = functional_parameters(one), b = functional_parameters(many);
+  // Bins of 1/65536 of 8 µm; steps at the ends of the sorted curve are wider.
+  EXPECT_NEAR(a.Sk.value, b.Sk.value, 3e-4);
+  // Half a step of ratio at an end, over the 2.7 µm beyond the line and twice over its share of 0.095: 1.7e-3.
+  EXPECT_NEAR(a.Spk.value, b.Spk.value, 1.7e-3);
+  EXPECT_NEAR(a.Svk.value, b.Svk.value, 1.7e-3);
+  EXPECT_NEAR(a.Smr1.value, b.Smr1.value, 2e-4);
+  EXPECT_NEAR(a.Vmp.value, b.Vmp.value, 1e-4);
+  EXPECT_NEAR(a.Vvv.value, b.Vvv.value, 1e-4);
+  EXPECT_NEAR(a.Sxp.value, b.Sxp.value, 1e-3);
+}
+
 }  // namespace
 }  // namespace mezzotint
