@@ -187,12 +187,14 @@ GwyddionField::Statistics GwyddionField::statistics() const {
   return s;
 }
 
-std::vector<double> GwyddionField::autocorrelation() const {
+GwyddionField::Lags GwyddionField::autocorrelation() const {
   GwyDataField* field = data_->field.get();
   const Field target(gwy_data_field_new_alike(field, FALSE));
   gwy_data_field_2dacf(field, target.get());
+  const auto columns = static_cast<std::size_t>(gwy_data_field_get_xres(target.get()));
+  const auto rows = static_cast<std::size_t>(gwy_data_field_get_yres(target.get()));
   const gdouble* values = gwy_data_field_get_data_const(target.get());
-  return {values, values + gwy_data_field_get_xres(target.get()) * gwy_data_field_get_yres(target.get())};
+  return {columns, rows, {values, values + columns * rows}};
 }
 
 double GwyddionField::power_spectrum() const {

@@ -36,8 +36,13 @@ public:
     double Sa = 0.0, Sq = 0.0, Ssk = 0.0, Sku_excess = 0.0, Sz = 0.0, Sdq = 0.0, Sdr = 0.0;
   };
   [[nodiscard]] Statistics statistics() const;
-  [[nodiscard]] std::vector<double> autocorrelation() const;  ///< lags up to half of the field, not normalised
-  [[nodiscard]] double power_spectrum() const;                ///< only made; its sum
+  /// Not normalised; no lag in the middle.
+  struct Lags {
+    std::size_t columns = 0, rows = 0;
+    std::vector<double> values;
+  };
+  [[nodiscard]] Lags autocorrelation() const;
+  [[nodiscard]] double power_spectrum() const;  ///< only made; its sum
   [[nodiscard]] std::vector<double> bearing_curve(int points) const;
   void turn(double radians);
   void resample_by(double factor);

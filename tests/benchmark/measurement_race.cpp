@@ -33,6 +33,7 @@
 #include "tests/benchmark/gwyddion_peer.h"
 #include "tests/benchmark/measure.h"
 #include "tests/benchmark/measured_scan.h"
+#include "tests/benchmark/measurement_answers.h"
 
 namespace {
 
@@ -199,6 +200,7 @@ int main(int count, char** words) {
     std::erase_if(steps, [&](const Step& step) {
       return std::none_of(wanted.begin(), wanted.end(), [&](const auto& w) { return step.name.starts_with(w); });
     });
+  if (wanted.empty()) benchmark::print_answers(1024);
   nlohmann::json all;
   for (std::size_t at = 0; at < sizes.size(); at = std::min(sizes.find(',', at), sizes.size() - 1) + 1)
     for (const auto& row : run_size(std::stoul(sizes.substr(at)), steps, repetitions)) all.push_back(row);
