@@ -1,3 +1,4 @@
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -45,6 +46,8 @@ public:
   }
   void real(double value) { number(value); }
   void reals(std::span<const double> values) {
+    if constexpr (std::endian::native == std::endian::little)
+      return bytes({reinterpret_cast<const char*>(values.data()), values.size_bytes()});
     std::string digits;
     append_little_endian(digits, values);
     bytes(digits);
