@@ -8,6 +8,7 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
+#include "forward/base/bounded_memory.h"
 #include "forward/base/error.h"
 #include "measurement/formats/byte_reader.h"
 #include "measurement/formats/parsers.h"
@@ -57,7 +58,7 @@ private:
   }
 
   const std::filesystem::path& path_;
-  OIIO::Filesystem::IOMemReader memory_;
+  BoundedMemory memory_;
   OIIO::Filesystem::IOProxy* proxy_ = &memory_;
   std::unique_ptr<OIIO::ImageInput> file_;
   OIIO::ImageSpec spec_;
