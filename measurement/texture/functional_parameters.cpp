@@ -36,17 +36,40 @@ double flattest_stretch(const BearingCurve& curve) {
   return half + range * middle / steps;
 }
 
+/// The equivalent straight line: its heights at the material ratios 0 and 1.
+struct Line {
+  double top_um = 0.0, bottom_um = 0.0;
+};
+
+// The line of least squares, in the direction of the heights, through the flattest stretch of the curve.
+Line equivalent_line(const BearingCurve& curve) {
+  const double begin = flattest_stretch(curve), n = static_cast<double>(curve.heights_um().size());
+  const auto first = static_cast<std::size_t>(std::ceil(begin * n - 0.5 - 1e-9));
+  const auto end = std::min(curve.heights_um().size(), static_cast<std::size_t>((begin + 0.4) * n - 0.5 + 1e-9) + 1);
+  const double middle = 0.5 * static_cast<double>(first + end - 1), count = static_cast<double>(end - first);
+  double mean = 0.0, moment = 0.0, squares = 0.0;
+  for (std::size_t k = first; k < end; ++k) {
+    const double x = static_cast<double>(k) - middle, z = curve.heights_um()[k];
+    mean += z / count;
+    moment += x * z;
+    squares += x * x;
+  }
+  // Two heights at least: 40 % of four are 1.6, so that a stretch of the shortest curve may hold one alone.
+  const double fall =
+      squares > 0.0 ? -moment / squares * n : (curve.height_um(begin) - curve.height_um(begin + 0.4)) / 0.4;
+  const double top = mean + fall * (middle + 0.5) / n;
+  return {top, top - fall};
+}
+
 // In the order of FunctionalParameters.
 Values values_of(const BearingCurve& curve) {
-  const double begin = flattest_stretch(curve), high = curve.height_um(begin), low = curve.height_um(begin + 0.4);
-  const double fall = (high - low) / 0.4;  // over the whole range of ratios
-  const double top = high + begin * fall, bottom = top - fall;
+  const auto [top, bottom] = equivalent_line(curve);
   const double mr1 = curve.ratio(top), mr2 = curve.ratio(bottom);
   const double hills = curve.integral_um(0.0, mr1) - mr1 * top;
   const double dales = (1.0 - mr2) * bottom - curve.integral_um(mr2, 1.0);
   const auto material = [&](double p) { return curve.integral_um(0.0, p) - p * curve.height_um(p); };
   const auto voids = [&](double p) { return (1.0 - p) * curve.height_um(p) - curve.integral_um(p, 1.0); };
-  return {fall,
+  return {top - bottom,
           mr1 > 0.0 ? 2.0 * std::max(0.0, hills) / mr1 : 0.0,
           mr2 < 1.0 ? 2.0 * std::max(0.0, dales) / (1.0 - mr2) : 0.0,
           mr1,
