@@ -74,8 +74,8 @@ void add_bandwidth(const Arguments& arguments, const HeightField& field, Finding
       "Sdq and Sdr hold wavelengths from {:.4g} to {:.4g} um; finer structure, which the instrument did not see, has "
       "slopes too",
       shortest, longest));
-  found.parameters.emplace_back("slope_kurtosis_major", Quantity{d.kurtosis_major, "1", {}});
-  found.parameters.emplace_back("slope_kurtosis_minor", Quantity{d.kurtosis_minor, "1", {}});
+  found.parameters.emplace_back("slope_kurtosis_major", d.kurtosis_major);
+  found.parameters.emplace_back("slope_kurtosis_minor", d.kurtosis_minor);
 }
 
 void add_profile(const Arguments& arguments, const HeightField& field, Findings& found) {

@@ -48,7 +48,9 @@ PowerSpectrum power_spectrum(const HeightField& field) {
       fft.real()[row * columns + column] =
           window_x[column] * window_y[row] * (static_cast<double>(field.at(column, row)) - mean);
   fft.forward();
-  PowerSpectrum result{columns, rows, field.grid().pitch_x, field.grid().pitch_y, std::vector<double>(columns * rows)};
+  PowerSpectrum result{
+      columns,          rows, field.grid().pitch_x, field.grid().pitch_y, std::vector<double>(columns * rows),
+      !field.periodic()};
   // |F|² · area of a sample ÷ Σ w².
   const double scale =
       field.grid().pitch_x.um() * field.grid().pitch_y.um() / (sum_of_squares(window_x) * sum_of_squares(window_y));
@@ -85,10 +87,13 @@ RadialSpectrum radial_spectrum(const PowerSpectrum& spectrum) {
       at.sum += density;
       at.squares += density * density;
     }
+  // Hann's window joins a frequency with its neighbours, by 2/3 and 1/6 of its amplitude along each axis. The sum of
+  // the squares of these over the neighbours in the same ring, one step wide, averaged over its directions.
+  const double joined = spectrum.windowed ? 1.865 : 1.0;
   RadialSpectrum result;
   for (const Ring& ring : rings) {
     if (ring.count == 0.0) continue;
-    const double mean = ring.sum / ring.count, independent = std::max(1.0, 0.5 * ring.count);
+    const double mean = ring.sum / ring.count, independent = std::max(1.0, 0.5 * ring.count / joined);
     const double variance = std::max(0.0, ring.squares / ring.count - mean * mean);
     result.frequency_per_um.push_back(ring.frequency / ring.count);
     result.density_um4.push_back(mean);
@@ -99,24 +104,74 @@ RadialSpectrum radial_spectrum(const PowerSpectrum& spectrum) {
   return result;
 }
 
-AngularSpectrum angular_spectrum(const PowerSpectrum& spectrum, double least_per_um, std::size_t directions) {
+namespace {
+
+// visit(f_x, f_y, density) for every frequency within the limits; 0 belongs to no direction.
+template <class Visit>
+void for_each_within(const PowerSpectrum& spectrum, const AngularLimits& limits, const Visit& visit) {
+  for (std::size_t row = 0; row < spectrum.rows; ++row)
+    for (std::size_t column = 0; column < spectrum.columns; ++column) {
+      const double fx = spectrum.frequency_x_per_um(column), fy = spectrum.frequency_y_per_um(row);
+      const double f = std::hypot(fx, fy);
+      if (f == 0.0 || f < limits.least_per_um || f > limits.most_per_um) continue;
+      visit(fx, fy, spectrum.density_um4[row * spectrum.columns + column]);
+    }
+}
+
+double power_within(const PowerSpectrum& spectrum, const AngularLimits& limits) {
+  double power = 0.0;
+  for_each_within(spectrum, limits, [&](double, double, double density) { power += density; });
+  return power;
+}
+
+}  // namespace
+
+namespace {
+
+// The part of a tent of half-width 1 that lies before x.
+double tent_before(double x) {
+  if (x <= -1.0) return 0.0;
+  if (x >= 1.0) return 1.0;
+  return x < 0.0 ? 0.5 * (1.0 + x) * (1.0 + x) : 1.0 - 0.5 * (1.0 - x) * (1.0 - x);
+}
+
+// Adds power at an angle, in steps, to the directions around by a tent of that half-width.
+void add_tent(std::vector<double>& share, double angle, double half_width, double power) {
+  const auto directions = static_cast<std::ptrdiff_t>(share.size());
+  const auto first = static_cast<std::ptrdiff_t>(std::floor(angle - half_width + 0.5));
+  const auto last = static_cast<std::ptrdiff_t>(std::floor(angle + half_width + 0.5));
+  double before = 0.0;
+  for (std::ptrdiff_t k = first; k <= last; ++k) {
+    const double up_to = k == last ? 1.0 : tent_before((static_cast<double>(k) + 0.5 - angle) / half_width);
+    share[static_cast<std::size_t>((k % directions + directions) % directions)] += power * (up_to - before);
+    before = up_to;
+  }
+}
+
+}  // namespace
+
+AngularSpectrum angular_spectrum(const PowerSpectrum& spectrum, const AngularLimits& limits, std::size_t directions) {
   require(directions >= 2 && directions <= 3600, "an angular spectrum has 2 to 3600 directions");
   AngularSpectrum result{std::vector<double>(directions, 0.0)};
   double total = 0.0;
   const double step = std::numbers::pi / static_cast<double>(directions);
-  for (std::size_t row = 0; row < spectrum.rows; ++row)
-    for (std::size_t column = 0; column < spectrum.columns; ++column) {
-      const double fx = spectrum.frequency_x_per_um(column), fy = spectrum.frequency_y_per_um(row);
-      if ((fx == 0.0 && fy == 0.0) || std::hypot(fx, fy) < least_per_um) continue;
-      const double angle = std::atan2(fy, fx) + 2.0 * std::numbers::pi;
-      const auto direction = static_cast<std::size_t>(std::llround(angle / step)) % directions;
-      const double density = spectrum.density_um4[row * spectrum.columns + column];
-      result.share[direction] += density;
-      total += density;
-    }
-  require(total > 0.0, "a flat field has no directions");
+  const double cell_x = 1.0 / (static_cast<double>(spectrum.columns) * spectrum.pitch_x.um());
+  const double cell_y = 1.0 / (static_cast<double>(spectrum.rows) * spectrum.pitch_y.um());
+  for_each_within(spectrum, limits, [&](double fx, double fy, double density) {
+    // As wide as a cell of the spectrum is, seen from its middle.
+    const double square = fx * fx + fy * fy;
+    const double width = std::min(0.5 * std::numbers::pi, (std::abs(fy) * cell_x + std::abs(fx) * cell_y) / square);
+    add_tent(result.share, std::atan2(fy, fx) / step, width / step, density);
+    total += density;
+  });
+  require(total > 0.0, "no power within these frequencies: a flat field has no directions");
   for (double& share : result.share) share /= total;
   return result;
+}
+
+double angular_power_share(const PowerSpectrum& spectrum, const AngularLimits& limits) {
+  const double all = power_within(spectrum, {});
+  return all > 0.0 ? power_within(spectrum, limits) / all : 0.0;
 }
 
 }  // namespace mezzotint

@@ -34,13 +34,13 @@ TEST(NormalDistribution, KnowsTwoSlopesFromManyByTheirKurtosis) {
       test::micrometre_grid(64, 16), [](double c, double) { return std::abs(std::remainder(c, 16.0)); },
       Continuation::Periodic));
   EXPECT_NEAR(d.axes.rms_major, 1.0, 1e-7);
-  EXPECT_NEAR(d.kurtosis_major, 1.0, 1e-7);
+  EXPECT_NEAR(d.kurtosis_major.value, 1.0, 1e-7);
   EXPECT_NEAR(d.axes.rotation.degrees(), 0.0, 1e-9);
   EXPECT_EQ(d.shortest_um, 2.0);
   EXPECT_EQ(d.longest_um, 64.0);
   const NormalDistribution noise = normal_distribution(test::white_noise(test::micrometre_grid(256, 256), 7));
   // Differences of Gaussian heights are Gaussian; 65000 of them give ±√(24/n) = 0.02, twice counted.
-  EXPECT_NEAR(noise.kurtosis_major, 3.0, 0.1);
+  EXPECT_NEAR(noise.kurtosis_major.value, 3.0, 0.1);
 }
 
 }  // namespace

@@ -83,6 +83,20 @@ TEST(SpatialParameters, OfAnIsotropicTextureHaveARatioNearOne) {
   EXPECT_LE(p.Str.value, 1.0);
 }
 
+TEST(SpatialParameters, OfWhiteNoiseHaveAnyDirection) {
+  // Neither along the axes, where most frequencies of a square lattice lie, nor to its corners. And the stated error is
+  // that of a direction which means nothing: a uniform one is 52° off.
+  double quarters = 0.0, stated = 0.0;
+  constexpr int draws = 80;
+  for (int i = 0; i < draws; ++i) {
+    const SpatialParameters p = spatial_parameters(test::white_noise(test::micrometre_grid(64, 64), 500 + i));
+    quarters += std::abs(std::remainder(p.Std.value, 90.0)) < 22.5 ? 1.0 : 0.0;
+    stated += *p.Std.standard_error / draws;
+  }
+  EXPECT_NEAR(quarters / draws, 0.5, 4.0 * 0.5 / std::sqrt(draws));
+  EXPECT_NEAR(stated, 52.0, 5.0);
+}
+
 TEST(SpatialParameters, OfRidgesSayWhatTheyCannotKnow) {
   const double angle = 30.0 * pi / 180.0;
   const HeightField field = test::field_of(test::micrometre_grid(200, 200), [&](double c, double r) {
