@@ -164,7 +164,10 @@ AreaRoughness area_roughness(const HeightField& field) {
   AreaRoughness result;
   result.Sa = mean_deviation(field, mean, heights);
   result.Sq = estimate(heights, "µm", [](const PowerSums& sums) { return central_moments(sums).rms; });
-  result.Sz = {(range.highest - range.lowest).um(), "µm", std::numeric_limits<double>::quiet_NaN()};
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  result.Sp = {range.highest.um() - mean, "µm", nan};
+  result.Sv = {mean - range.lowest.um(), "µm", nan};
+  result.Sz = {(range.highest - range.lowest).um(), "µm", nan};
   result.Ssk = estimate(heights, "1", [](const PowerSums& sums) { return central_moments(sums).skewness; });
   result.Sku = estimate(heights, "1", [](const PowerSums& sums) { return central_moments(sums).kurtosis; });
   result.Sdq = estimate(slopes, "1", [](const SlopeSums& sums) { return std::sqrt(sums.squares / sums.count); });

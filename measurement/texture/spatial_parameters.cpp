@@ -56,20 +56,16 @@ double smooth(const Autocorrelation& f, double x, double y) {
   return sum;
 }
 
-struct Decay {
-  double length_um = 0.0;
-  bool reached = false;  // else the length is how far could be looked
-};
-
 // From the middle in one direction to the first place where f is down to the threshold: walked in quarter steps, then
 // found between two of them.
 Decay decay_along(const Autocorrelation& f, double angle) {
+  const Angle direction = Angle::from_radians(angle);
   const double dx = std::cos(angle) / f.pitch_x.um(), dy = std::sin(angle) / f.pitch_y.um();
   const double step_um = 0.25 * std::min(f.pitch_x.um(), f.pitch_y.um());
   double last = 1.0;
   for (std::size_t k = 1;; ++k) {
     const double way = step_um * static_cast<double>(k), value = bilinear(f, way * dx, way * dy);
-    if (std::isnan(value)) return {way - step_um, false};
+    if (std::isnan(value)) return {direction, way - step_um, false};
     if (value > threshold) {
       last = value;
       continue;
@@ -78,12 +74,12 @@ Decay decay_along(const Autocorrelation& f, double angle) {
     double above = std::max(0.0, way - 3.0 * step_um), below = way + 2.0 * step_um;
     const auto excess = [&](double at) { return smooth(f, at * dx, at * dy) - threshold; };
     if (!(excess(above) > 0.0) || !(excess(below) <= 0.0))
-      return {way - step_um * (threshold - value) / (last - value), true};
+      return {direction, way - step_um * (threshold - value) / (last - value), true};
     for (int i = 0; i < 40; ++i) {
       const double middle = 0.5 * (above + below);
       (excess(middle) > 0.0 ? above : below) = middle;
     }
-    return {0.5 * (above + below), true};
+    return {direction, 0.5 * (above + below), true};
   }
 }
 
@@ -108,25 +104,20 @@ struct Extremes {
   bool any = false, all = true;
 };
 
-Extremes decays(const Autocorrelation& f) {
+Extremes extremes(const Autocorrelation& f) {
   Extremes result;
-  double shortest_angle = 0.0;
-  for (int k = 0; k < directions; ++k) {
-    const double angle = std::numbers::pi * k / directions;
-    const Decay decay = decay_along(f, angle);
+  Decay shortest{{}, HUGE_VAL, false}, longest;
+  for (const Decay& decay : decays_of(f)) {
     result.any |= decay.reached;
     result.all &= decay.reached;
-    if (decay.reached && decay.length_um < result.shortest) {
-      result.shortest = decay.length_um;
-      shortest_angle = angle;
-    }
-    if (decay.length_um > result.longest) {
-      result.longest = decay.length_um;
-      result.longest_angle = angle;
-    }
+    if (decay.reached && decay.length_um < shortest.length_um) shortest = decay;
+    if (decay.length_um > longest.length_um) longest = decay;
   }
-  if (result.any) result.shortest = best_near(f, shortest_angle, {result.shortest, true}, 1.0).length_um;
-  if (result.all) result.longest = best_near(f, result.longest_angle, {result.longest, true}, -1.0).length_um;
+  result.longest_angle = longest.direction.radians();
+  if (result.any) shortest = best_near(f, shortest.direction.radians(), shortest, 1.0);
+  if (result.all) longest = best_near(f, result.longest_angle, longest, -1.0);
+  result.shortest = shortest.length_um;
+  result.longest = longest.length_um;
   return result;
 }
 
@@ -179,10 +170,10 @@ Jackknife jackknife(const HeightField& field, double sal_um) {
     }
     return mean;
   };
-  const Extremes whole = decays(mean_without(block_count));
+  const Extremes whole = extremes(mean_without(block_count));
   std::array<double, block_count> sal{}, str{};
   for (std::size_t block = 0; block < block_count; ++block) {
-    const Extremes without = samples[block] > 0.0 ? decays(mean_without(block)) : whole;
+    const Extremes without = samples[block] > 0.0 ? extremes(mean_without(block)) : whole;
     sal[block] = without.shortest;
     str[block] = without.shortest / without.longest;
   }
@@ -221,11 +212,27 @@ Quantity texture_direction(const HeightField& field) {
   return {degrees, "°", std::sqrt(step * step / 12.0 + (blocks > 0.0 ? squares / blocks : 0.0))};
 }
 
+void require_large_enough(const HeightField& field) {
+  require(field.columns() >= 16 && field.rows() >= 16, "spatial parameters need 16 x 16 samples at least");
+}
+
 }  // namespace
 
+std::vector<Decay> decays_of(const Autocorrelation& autocorrelation) {
+  std::vector<Decay> result;
+  for (int k = 0; k < directions; ++k)
+    result.push_back(decay_along(autocorrelation, std::numbers::pi * k / directions));
+  return result;
+}
+
 SpatialParameters spatial_parameters(const HeightField& field) {
-  require(field.columns() >= 16 && field.rows() >= 16, "spatial parameters need 16 x 16 samples at least");
-  const Extremes found = decays(autocorrelation(field));
+  require_large_enough(field);
+  return spatial_parameters(field, autocorrelation(field));
+}
+
+SpatialParameters spatial_parameters(const HeightField& field, const Autocorrelation& known) {
+  require_large_enough(field);
+  const Extremes found = extremes(known);
   SpatialParameters result;
   const double sal = found.any ? found.shortest : nan;
   const Jackknife errors = jackknife(field, sal);

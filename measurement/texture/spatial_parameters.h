@@ -1,9 +1,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "forward/base/quantity.h"
 #include "forward/surface/height_field.h"
+#include "measurement/texture/autocorrelation.h"
 
 namespace mezzotint {
 
@@ -31,5 +33,16 @@ struct SpatialParameters {
 /// @param field  levelled; a patch with missing samples has no Std (NaN): fill them first
 /// @throws InvalidInput for a flat field or one of fewer than 16 × 16 samples.
 [[nodiscard]] SpatialParameters spatial_parameters(const HeightField& field);
+/// The same where the field's autocorrelation is known.
+[[nodiscard]] SpatialParameters spatial_parameters(const HeightField& field, const Autocorrelation& known);
+
+/// How far the autocorrelation is above 0.2 from the middle on, in one direction.
+struct Decay {
+  Angle direction;
+  double length_um = 0.0;
+  bool reached = false;  ///< else the length is how far could be looked
+};
+/// In steps of half a degree over half a turn; the other half is its mirror image.
+[[nodiscard]] std::vector<Decay> decays_of(const Autocorrelation& autocorrelation);
 
 }  // namespace mezzotint

@@ -17,7 +17,7 @@ const std::vector<std::string> every_command = {
     "validate run/design.gwy --measured run/measured.gwy -o validation",
     "synthesize pattern.toml -o relief.gwy",
     "info relief.gwy",
-    "roughness relief.gwy",
+    "roughness relief.gwy --profile 0,16,124,16 --report texture.html",
     "correct relief.gwy -o corrected.gwy --level plane",
     "convert relief.gwy relief.obj",
     "mesh relief.gwy -o mesh.obj",
