@@ -207,11 +207,10 @@ Command add_correct(CLI::App& program) {
             surface.provenance["correction"] = words.empty() ? "none" : words;
             write_surface(surface, arguments->output);
             const std::size_t left = surface.field.missing_count();
-            nlohmann::ordered_json json = {{"written", arguments->output},
-                                           {"missing_before", missing},
-                                           {"missing_after", left},
-                                           {"steps", correction.done},
-                                           {"warnings", correction.warnings}};
+            nlohmann::ordered_json json = {{"written", arguments->output},    {"missing_before", missing},
+                                           {"missing_after", left},           {"steps", correction.done},
+                                           {"warnings", correction.warnings}, {"assumption", surface.assumption}};
+            json.update(contents(surface.field));
             std::string text;
             for (const std::string& step : correction.done) text += step + "\n";
             context.print(json, text + fmt::format("wrote {}: {} samples missing before, {} after", arguments->output,

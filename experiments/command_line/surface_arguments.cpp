@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "experiments/command_line/option_checks.h"
+#include "forward/base/quantity.h"
 
 namespace mezzotint {
 
@@ -20,6 +21,17 @@ void add_surface_input(CLI::App& app, const char* name, SurfaceArguments& argume
   app.add_option("--min-quality", arguments.min_quality,
                  "Take samples below this gray level of qualitymap.bmp as missing (Alicona's folders)")
       ->check(CLI::Range(1, 255));
+}
+
+nlohmann::ordered_json contents(const HeightField& field) {
+  const Grid& grid = field.grid();
+  const auto missing = static_cast<double>(field.missing_count());
+  return {{"columns", grid.columns},
+          {"rows", grid.rows},
+          {"pitch_x", Quantity{grid.pitch_x.um(), "µm", {}}},
+          {"pitch_y", Quantity{grid.pitch_y.um(), "µm", {}}},
+          {"missing", field.missing_count()},
+          {"missing_share", Quantity{missing / static_cast<double>(grid.size()), "1", {}}}};
 }
 
 }  // namespace mezzotint

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include <nlohmann/json.hpp>
+
 #include "measurement/formats/surface_file.h"
 
 namespace CLI {
@@ -20,5 +22,8 @@ struct SurfaceArguments {
 
 /// The file as a positional argument, and --min-quality.
 void add_surface_input(CLI::App& app, const char* name, SurfaceArguments& arguments);
+
+/// {"columns", "rows", "pitch_x", "pitch_y", "missing", "missing_share"}: what was written, for --json.
+[[nodiscard]] nlohmann::ordered_json contents(const HeightField& field);
 
 }  // namespace mezzotint

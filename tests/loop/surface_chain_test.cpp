@@ -26,6 +26,13 @@ TEST(Commands, LeadFromAPatternToItsLobe) {
   EXPECT_EQ(json("info tile.gwy").at("periodic"), true);
   EXPECT_EQ(json("info relief.gwy").at("periodic"), false);
 
+  EXPECT_EQ(json("info relief.gwy").at("range").at("unit"), "µm");
+  EXPECT_EQ(json("info relief.gwy").at("missing_share").at("value"), 0.0);
+  const auto copy = json("convert tile.gwy copy.sur");
+  EXPECT_EQ(copy.at("rows"), 64);
+  EXPECT_EQ(copy.at("period_lost"), true);
+  EXPECT_LT(copy.at("height_rounding").at("value"), 1e-8);
+
   const auto corrected = json("correct relief.gwy -o corrected.gwy --level plane --outliers 5 --fill");
   EXPECT_EQ(corrected.at("missing_after"), 0);
   EXPECT_EQ(json("correct relief.gwy -o part.gwy --crop 8,8,32,16").at("written"), "part.gwy");
