@@ -128,10 +128,10 @@ json height_histogram(const TextureFindings& found) {
   if (found.roughness.Sq.value > 0.0) references.push_back(bins.normal(mean, found.roughness.Sq.value));
   return slope_histogram(
       {.title = "Heights",
-       .caption =
-           fmt::format("Dashed: a normal distribution of the same Sq. Skewness {:.3g} (it: 0), kurtosis {:.3g} (it: "
-                       "3).",
-                       found.roughness.Ssk.value, found.roughness.Sku.value),
+       .caption = fmt::format(
+           "Dashed: a normal distribution of the same Sq. Skewness {:.3g} (normal: 0), kurtosis {:.3g} (normal: "
+           "3).",
+           found.roughness.Ssk.value, found.roughness.Sku.value),
        .span = Span::Half},
       bins.densities("heights"), references, "Height (µm)");
 }

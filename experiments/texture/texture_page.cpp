@@ -62,6 +62,7 @@ Section heights_section(const TextureFindings& found) {
   return {.title = "Height distribution", .text = "", .components = {height_histogram(found), bearing_chart(found)}};
 }
 
+// Of a surface that is neither flat nor tiny: one with an autocorrelation.
 Section wavelengths_section(const TextureFindings& found) {
   const bool whole = found.field.missing_count() == 0;
   const PowerSpectrum spectrum = power_spectrum(whole ? found.field : fill_missing(found.field));
@@ -71,7 +72,7 @@ Section wavelengths_section(const TextureFindings& found) {
                           share_in_words(found.missing_share()));
   Section section{.title = "Wavelengths and directions", .text = ""};
   section.components = {radial_chart(spectrum, remark), angular_chart(spectrum, remark), spectrum_map(spectrum)};
-  if (found.autocorrelation) section.components.push_back(autocorrelation_map(*found.autocorrelation));
+  section.components.push_back(autocorrelation_map(*found.autocorrelation));
   return section;
 }
 
@@ -144,7 +145,7 @@ Report texture_page(const TextureFindings& found, const TextureRequest& request,
               .key_figures = figures_of(found)};
   add_messages(page, found, source);
   page.sections = {surface_section(found, request), heights_section(found)};
-  if (found.roughness.Sq.value > 0.0) page.sections.push_back(wavelengths_section(found));
+  if (found.autocorrelation) page.sections.push_back(wavelengths_section(found));
   page.sections.push_back(slopes_section(found));
   if (found.profile) page.sections.push_back(profile_section(found, request));
   page.sections.push_back(parameters_section(found));
