@@ -220,6 +220,7 @@ void require_large_enough(const HeightField& field) {
 
 std::vector<Decay> decays_of(const Autocorrelation& autocorrelation) {
   std::vector<Decay> result;
+  result.reserve(directions);
   for (int k = 0; k < directions; ++k)
     result.push_back(decay_along(autocorrelation, std::numbers::pi * k / directions));
   return result;
