@@ -107,16 +107,6 @@ Series thinned(const std::string& name, const Profile& profile, double offset_um
   return series;
 }
 
-json quantitative(const std::string& field, const std::string& title, bool from_zero) {
-  return {{"field", field},
-          {"type", "quantitative"},
-          {"title", title},
-          {"axis", {{"tickCount", 6}}},
-          {"scale", {{"zero", from_zero}, {"nice", false}}}};
-}
-
-json data_of(json rows) { return {{"values", std::move(rows)}}; }
-
 }  // namespace
 
 json height_histogram(const TextureFindings& found) {
@@ -134,85 +124,6 @@ json height_histogram(const TextureFindings& found) {
            found.roughness.Ssk.value, found.roughness.Sku.value),
        .span = Span::Half},
       bins.densities("heights"), references, "Height (µm)");
-}
-
-json bearing_chart(const TextureFindings& found) {
-  const BearingCurve curve(found.field);
-  const FunctionalParameters& f = found.functional;
-  const double mr1 = f.Smr1.value, mr2 = f.Smr2.value;
-  // The line passes the curve at Smr1 and at Smr2; at an end it may lie beyond all heights.
-  const double top = mr1 > 0.0   ? curve.height_um(mr1)
-                     : mr2 < 1.0 ? curve.height_um(mr2) + f.Sk.value
-                                 : curve.height_um(0.0);
-  const double bottom = top - f.Sk.value;
-  json points = json::array();
-  constexpr int steps = 400;
-  for (int k = 0; k <= steps; ++k) {
-    // Closer together at both ends, where the curve is steep.
-    const double p = 0.5 - 0.5 * std::cos(std::numbers::pi * k / steps);
-    points.push_back({{"ratio", 100.0 * p}, {"height", curve.height_um(p)}});
-  }
-  const auto corner = [](const char* name, double ratio, double height, int order) {
-    return json{{"part", name}, {"ratio", 100.0 * ratio}, {"height", height}, {"order", order}};
-  };
-  const json line = {corner("line", 0.0, top, 0), corner("line", 1.0, bottom, 1)};
-  const auto triangle = [&](double a, double za, double b, double zb) {
-    return json{{{"ratio", 100.0 * a}, {"low", za}, {"high", za}},
-                {{"ratio", 100.0 * b}, {"low", std::min(za, zb)}, {"high", std::max(za, zb)}}};
-  };
-  const json levels = {{{"low", top}, {"high", top + f.Spk.value}, {"name", "Spk"}},
-                       {{"low", bottom}, {"high", top}, {"name", "Sk"}},
-                       {{"low", bottom - f.Svk.value}, {"high", bottom}, {"name", "Svk"}}};
-  const json x = quantitative("ratio", "Material ratio (%)", true), y = quantitative("height", "Height (µm)", false);
-  json low = y, middle = y;
-  low["field"] = "low";
-  middle["field"] = "middle";
-  const json area = {{"type", "area"}, {"color", "$series-2"}, {"opacity", 0.25}, {"line", false}};
-  const auto shaded = [&](json rows) {
-    return json{{"data", data_of(std::move(rows))},
-                {"mark", area},
-                {"encoding", {{"x", x}, {"y", low}, {"y2", {{"field", "high"}}}}}};
-  };
-  json shown = json::array();
-  for (const json& level : levels) {
-    if (!(level["high"].get<double>() > level["low"].get<double>())) continue;
-    json row = level;
-    row["middle"] = 0.5 * (level["low"].get<double>() + level["high"].get<double>());
-    shown.push_back(std::move(row));
-  }
-  json layers = {shaded(triangle(mr1, top, 0.0, top + f.Spk.value)),
-                 shaded(triangle(mr2, bottom, 1.0, bottom - f.Svk.value))};
-  layers.push_back({{"data", data_of(points)},
-                    {"mark", {{"type", "line"}, {"color", "$series-1"}, {"strokeWidth", 2.25}}},
-                    {"encoding", {{"x", x}, {"y", y}}}});
-  layers.push_back({{"data", data_of(line)},
-                    {"mark", {{"type", "line"}, {"color", "$ink"}, {"strokeDash", {5, 4}}, {"strokeWidth", 1.5}}},
-                    {"encoding", {{"x", x}, {"y", y}}}});
-  layers.push_back(
-      {{"data", data_of(shown)},
-       {"mark", {{"type", "rule"}, {"color", "$quiet"}, {"strokeWidth", 1.5}, {"x", {{"expr", "width - 14"}}}}},
-       {"encoding", {{"y", low}, {"y2", {{"field", "high"}}}}}});
-  layers.push_back(
-      {{"data", data_of(shown)},
-       {"mark", {{"type", "text"}, {"align", "right"}, {"x", {{"expr", "width - 20"}}}, {"fontStyle", "italic"}}},
-       {"encoding", {{"y", middle}, {"text", {{"field", "name"}}}}}});
-  layers.push_back({{"data", data_of(points)},
-                    {"mark", {{"type", "point"}, {"opacity", 0}, {"size", 60}}},
-                    {"encoding",
-                     {{"x", x},
-                      {"y", y},
-                      {"tooltip",
-                       {{{"field", "ratio"}, {"title", "Smr (%)"}, {"format", ".4~g"}},
-                        {{"field", "height"}, {"title", "height (µm)"}, {"format", ".4~g"}}}}}}});
-  return vega_lite_chart(
-      {.title = "Material ratio curve",
-       .caption =
-           fmt::format("Dashed: the line of least squares through the flattest 40 %; Sk is its fall. The triangles "
-                       "are as large as what stands above it, up to Smr1 = {:.1f} %, and lies below it, from Smr2 = "
-                       "{:.1f} %.",
-                       100.0 * mr1, 100.0 * mr2),
-       .span = Span::Half},
-      {{"width", "container"}, {"height", "container"}, {"layer", layers}});
 }
 
 json radial_chart(const PowerSpectrum& spectrum, const std::string& remark) {
