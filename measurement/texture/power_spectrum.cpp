@@ -135,7 +135,8 @@ double tent_before(double x) {
   return x < 0.0 ? 0.5 * (1.0 + x) * (1.0 + x) : 1.0 - 0.5 * (1.0 - x) * (1.0 - x);
 }
 
-// Adds power at an angle, in steps, to the directions around by a tent of that half-width.
+// Adds power at an angle, in steps, to the directions around by a tent of that half-width: as wide as a cell of the
+// spectrum is, seen from its middle.
 void add_tent(std::vector<double>& share, double angle, double half_width, double power) {
   const auto directions = static_cast<std::ptrdiff_t>(share.size());
   const auto first = static_cast<std::ptrdiff_t>(std::floor(angle - half_width + 0.5));
@@ -148,6 +149,35 @@ void add_tent(std::vector<double>& share, double angle, double half_width, doubl
   }
 }
 
+/// A frequency, and how far its neighbours are.
+struct SpectrumCell {
+  double fx, fy, cell_x, cell_y;
+};
+
+constexpr double near_cells = 16.0;  // nearer to the middle a cell is no narrow angle
+
+double half_width(double fx, double fy, double cell_x, double cell_y) {
+  // So wide the tents of a lattice's lines add up to the same in every direction: along an axis lines are one cell
+  // apart, along a diagonal 1/√2.
+  return std::min(0.5 * std::numbers::pi, (std::abs(fy) * cell_x + std::abs(fx) * cell_y) / (fx * fx + fy * fy));
+}
+
+// The same for a frequency near the middle: by the directions of the places where it counts, were the spectrum
+// interpolated bilinearly, each as wide as a place is.
+void add_cell(std::vector<double>& share, const SpectrumCell& cell, double step, double power) {
+  // Each way; fewer where they are further from the middle. One of them is the frequency itself, none the middle.
+  const double cells = std::hypot(cell.fx / cell.cell_x, cell.fy / cell.cell_y);
+  const int places = std::clamp(static_cast<int>(std::ceil(32.0 / cells)), 2, 8);
+  const double sum = static_cast<double>(places) * places;
+  for (int i = 1 - places; i < places; ++i)
+    for (int j = 1 - places; j < places; ++j) {
+      const double u = static_cast<double>(i) / places, v = static_cast<double>(j) / places;
+      const double fx = cell.fx + u * cell.cell_x, fy = cell.fy + v * cell.cell_y;
+      add_tent(share, std::atan2(fy, fx) / step, half_width(fx, fy, cell.cell_x / places, cell.cell_y / places) / step,
+               power * (1.0 - std::abs(u)) * (1.0 - std::abs(v)) / sum);
+    }
+}
+
 }  // namespace
 
 AngularSpectrum angular_spectrum(const PowerSpectrum& spectrum, const AngularLimits& limits, std::size_t directions) {
@@ -157,12 +187,13 @@ AngularSpectrum angular_spectrum(const PowerSpectrum& spectrum, const AngularLim
   const double step = std::numbers::pi / static_cast<double>(directions);
   const double cell_x = 1.0 / (static_cast<double>(spectrum.columns) * spectrum.pitch_x.um());
   const double cell_y = 1.0 / (static_cast<double>(spectrum.rows) * spectrum.pitch_y.um());
+  const double near = near_cells * std::max(cell_x, cell_y);
   for_each_within(spectrum, limits, [&](double fx, double fy, double density) {
-    // As wide as a cell of the spectrum is, seen from its middle.
-    const double square = fx * fx + fy * fy;
-    const double width = std::min(0.5 * std::numbers::pi, (std::abs(fy) * cell_x + std::abs(fx) * cell_y) / square);
-    add_tent(result.share, std::atan2(fy, fx) / step, width / step, density);
     total += density;
+    // Of a long and narrow field no further than the frequency is from the middle, lest it count in any direction.
+    const double f = std::hypot(fx, fy);
+    if (f < near) return add_cell(result.share, {fx, fy, std::min(f, cell_x), std::min(f, cell_y)}, step, density);
+    add_tent(result.share, std::atan2(fy, fx) / step, half_width(fx, fy, cell_x, cell_y) / step, density);
   });
   require(total > 0.0, "no power within these frequencies: a flat field has no directions");
   for (double& share : result.share) share /= total;

@@ -52,9 +52,10 @@ struct AngularLimits {
 
 /// Power by the direction of the wave vector, from 0° up to, but not including, 180°, counter-clockwise from +x: shares
 /// of the power within the limits that sum to 1.
-/// How      each frequency's power is spread over the directions that its cell of the spectrum takes up, seen from the
-///          middle, by a tent. (Counted in the direction of its middle alone, white noise would have its strongest
-///          direction along an axis, where most middles lie.) So a field of few waves resolves directions coarsely.
+/// How      the spectrum's integral along rays from the middle, were it interpolated bilinearly: each frequency's power
+///          is spread over the directions that its cell takes up. (Counted in the direction of its middle alone, white
+///          noise would have its strongest direction along an axis, where most middles lie.) So a field of few waves
+///          resolves directions coarsely.
 struct AngularSpectrum {
   std::vector<double> share;  ///< of direction k·180°/size
 };

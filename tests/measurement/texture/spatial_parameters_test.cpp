@@ -88,7 +88,7 @@ TEST(SpatialParameters, OfWhiteNoiseHaveAnyDirection) {
   // Neither along the axes, where most frequencies of a square lattice lie, nor to its corners. And the stated error is
   // that of a direction which means nothing: a uniform one is 52° off.
   double quarters = 0.0, stated = 0.0;
-  constexpr int draws = 48;
+  constexpr int draws = 24;
   for (int i = 0; i < draws; ++i) {
     const SpatialParameters p = spatial_parameters(test::white_noise(test::micrometre_grid(48, 48), 500 + i));
     quarters += std::abs(std::remainder(p.Std.value, 90.0)) < 22.5 ? 1.0 : 0.0;
