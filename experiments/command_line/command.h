@@ -50,6 +50,7 @@ Command add_run(CLI::App& program);
 Command add_design(CLI::App& program);
 Command add_info(CLI::App& program);
 Command add_convert(CLI::App& program);
+Command add_measure(CLI::App& program);
 Command add_correct(CLI::App& program);
 Command add_roughness(CLI::App& program);
 Command add_synthesize(CLI::App& program);

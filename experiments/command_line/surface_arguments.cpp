@@ -13,9 +13,10 @@ SurfaceFile SurfaceArguments::read() const {
   return read_surface(input, options);
 }
 
-void add_surface_input(CLI::App& app, const char* name, SurfaceArguments& arguments) {
-  app.add_option(name, arguments.input,
-                 fmt::format("Surface: {}; FILE.gwy#/N/data for one of several channels", read_surface_formats))
+void add_surface_input(CLI::App& app, const char* name, SurfaceArguments& arguments, const char* besides) {
+  app.add_option(
+         name, arguments.input,
+         fmt::format("Surface: {}; FILE.gwy#/N/data for one of several channels{}", read_surface_formats, besides))
       ->required();
   app.add_option("--min-quality", arguments.min_quality,
                  "Take samples below this gray level of qualitymap.bmp as missing (Alicona's folders)")

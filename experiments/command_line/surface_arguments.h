@@ -19,6 +19,7 @@ struct SurfaceArguments {
 };
 
 /// The file as a positional argument, and --min-quality.
-void add_surface_input(CLI::App& app, const char* name, SurfaceArguments& arguments);
+/// @param besides  what else the command takes for it, for the help text
+void add_surface_input(CLI::App& app, const char* name, SurfaceArguments& arguments, const char* besides = "");
 
 }  // namespace mezzotint

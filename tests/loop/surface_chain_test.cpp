@@ -43,6 +43,13 @@ TEST(Commands, LeadFromAPatternToItsLobe) {
   // As long as the filter's cut-off, half of a wave is left: 0.75 µm of 1.5.
   EXPECT_NEAR(json("roughness tile.gwy --level none --l-filter 28.6216701").at("Sq").at("value"), 0.75, 1e-3);
 
+  // The optics pass half of a wave as long as the bandwidth, the tilt is levelled, the offset is the scan's datum.
+  const auto scan = json("measure tile.gwy -o scan.al3d --bandwidth 28.6216701 --tilt -0.01,0.02 --offset 76");
+  EXPECT_EQ(scan.at("missing"), 0);
+  EXPECT_NEAR(json("info scan.al3d").at("datum").at("value"), 76000.0, 5.0);
+  EXPECT_NEAR(json("roughness scan.al3d").at("Sq").at("value"), 0.75, 5e-3);  // the plane takes a little of the waves
+  EXPECT_EQ(json("measure pattern.toml -o scan.al3d --pitch 4 --dropouts 0.1").at("columns"), 32);
+
   EXPECT_EQ(json("mesh relief.gwy -o relief.obj").at("vertices"), 64 * 64);
   EXPECT_NE(here.read("relief.mtl").find("Ni 1.5"), std::string::npos);
   EXPECT_NE(here.read("relief.mtl").find("illum 4"), std::string::npos);
