@@ -1,4 +1,5 @@
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -14,6 +15,7 @@
 #include "measurement/texture/profile.h"
 #include "measurement/texture/roughness.h"
 #include "measurement/texture/spatial_parameters.h"
+#include "measurement/texture/texture_notes.h"
 
 namespace mezzotint {
 
@@ -27,20 +29,31 @@ struct Arguments : SurfaceArguments {
   std::vector<double> profile;
 };
 
-HeightField prepared(const Arguments& arguments, const HeightField& measured) {
-  HeightField field = arguments.level == "plane" ? level(measured) : measured;
-  if (arguments.s_filter > 0.0) field = s_filter(field, Length::from_um(arguments.s_filter));
-  if (arguments.l_filter > 0.0) field = l_filter(field, Length::from_um(arguments.l_filter));
-  return field;
-}
-
 /// Parameters in the order in which they are printed, with what else must be known.
 struct Findings {
   std::vector<std::pair<std::string, Quantity>> parameters;
   std::vector<std::string> notes;
+
+  void add_note(std::string note) {
+    if (!note.empty()) notes.push_back(std::move(note));
+  }
 };
 
-void add_areal(const HeightField& field, Findings& found) {
+HeightField prepared(const Arguments& arguments, const HeightField& measured, Findings& found) {
+  HeightField field = arguments.level == "plane" ? level(measured) : measured;
+  const Length shortest = Length::from_um(arguments.s_filter), longest = Length::from_um(arguments.l_filter);
+  if (shortest.um() > 0.0) {
+    found.add_note(filter_warning(field, shortest));
+    field = s_filter(field, shortest);
+  }
+  if (longest.um() > 0.0) {
+    found.add_note(filter_warning(field, longest));
+    field = l_filter(field, longest);
+  }
+  return field;
+}
+
+void add_areal(const HeightField& measured, const HeightField& field, Findings& found) {
   const AreaRoughness r = area_roughness(field);
   found.parameters = {{"Sa", r.Sa},   {"Sq", r.Sq},   {"Sz", r.Sz},  {"Ssk", r.Ssk},
                       {"Sku", r.Sku}, {"Sdq", r.Sdq}, {"Sdr", r.Sdr}};
@@ -56,13 +69,16 @@ void add_areal(const HeightField& field, Findings& found) {
                                 {"Vvv", f.Vvv},
                                 {"Sxp", f.Sxp}})
     found.parameters.emplace_back(name, q);
+  std::optional<SpatialParameters> spatial;
   if (r.Sq.value > 0.0 && field.columns() >= 16 && field.rows() >= 16) {
-    const SpatialParameters s = spatial_parameters(field);
+    const SpatialParameters& s = spatial.emplace(spatial_parameters(field));
     for (const auto& [name, q] : {std::pair{"Sal", s.Sal}, {"Str", s.Str}, {"Std", s.Std}})
       found.parameters.emplace_back(name, q);
-    if (!s.note.empty()) found.notes.push_back(s.note);
+    found.add_note(s.note);
     if (field.missing_count() > 0) found.notes.push_back("Std needs every sample; fill the missing ones first");
   }
+  for (std::string& note : texture_notes(field, r, spatial ? &*spatial : nullptr)) found.add_note(std::move(note));
+  found.add_note(height_step_note(measured, r));
 }
 
 // Which wavelengths the slopes hold.
@@ -94,8 +110,10 @@ void add_profile(const Arguments& arguments, const HeightField& field, Findings&
                                 {"dq", r.dq},
                                 {"Sm", r.sm}})
     found.parameters.emplace_back(letter + name, q);
-  found.notes.push_back(fmt::format("profile over {} sampling lengths, {:.2g} % of it missing", r.sampling_lengths,
-                                    100.0 * r.missing_share));
+  const bool few = r.letter == 'R' && r.sampling_lengths < 5;
+  found.add_note(fmt::format(
+      "profile over {} sampling lengths, {:.2g} % of it missing{}", r.sampling_lengths, 100.0 * r.missing_share,
+      few ? "; ISO 21920-3 takes five: Rz and the standard errors of fewer are not comparable" : ""));
 }
 
 std::string in_words(const Findings& found) {
@@ -131,9 +149,9 @@ Command add_roughness(CLI::App& program) {
       ->needs(profile);
   return {app, [arguments](const CommandContext& context) {
             const SurfaceFile surface = arguments->read();
-            const HeightField field = prepared(*arguments, surface.field);
             Findings found;
-            add_areal(field, found);
+            const HeightField field = prepared(*arguments, surface.field, found);
+            add_areal(surface.field, field, found);
             add_bandwidth(*arguments, field, found);
             if (!arguments->profile.empty()) add_profile(*arguments, field, found);
             Json json;

@@ -56,6 +56,19 @@ HeightRange height_range(const HeightField& field) {
   return {Length::from_um(lowest), Length::from_um(highest)};
 }
 
+Length root_mean_square_height(const HeightField& field) {
+  double sum = 0.0, squares = 0.0, count = 0.0;
+  for (const float height : field.heights_um()) {
+    if (std::isnan(height)) continue;
+    const double z = double{height};
+    sum += z;
+    squares += z * z;
+    count += 1.0;
+  }
+  require(count > 0.0, "every height is missing: there is no root mean square");
+  return Length::from_um(std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count))));
+}
+
 HeightField crop(const HeightField& field, std::size_t column, std::size_t row, std::size_t columns, std::size_t rows) {
   require(columns > 0 && rows > 0 && column < field.columns() && row < field.rows() &&
               columns <= field.columns() - column && rows <= field.rows() - row,

@@ -79,6 +79,10 @@ struct HeightRange {
 };
 [[nodiscard]] HeightRange height_range(const HeightField& field);
 
+/// Root-mean-square height about the mean: Sq of ISO 25178-2. Missing samples are left out.
+/// @throws InvalidInput when no sample is left.
+[[nodiscard]] Length root_mean_square_height(const HeightField& field);
+
 /// The part of a field from sample (column, row) on; no longer periodic, unless it is the whole.
 /// @throws InvalidInput when the part reaches outside of the field.
 [[nodiscard]] HeightField crop(const HeightField& field, std::size_t column, std::size_t row, std::size_t columns,

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <fmt/format.h>
 #include <Eigen/SparseCholesky>
 
 #include "forward/base/error.h"
@@ -121,7 +122,38 @@ void write(HeightField& field, const std::vector<std::size_t>& samples, const Va
     field.heights_um()[samples[k]] = static_cast<float>(heights_um[static_cast<std::ptrdiff_t>(k)]);
 }
 
+double rms_slope(const HeightField& field) {
+  const double per_x = 1.0 / field.grid().pitch_x.um(), per_y = 1.0 / field.grid().pitch_y.um();
+  double squares = 0.0, count = 0.0;
+  const auto add = [&](double rise, double per_um) {
+    if (std::isnan(rise)) return;
+    squares += rise * rise * per_um * per_um;
+    count += 1.0;
+  };
+  for (std::size_t row = 0; row < field.rows(); ++row)
+    for (std::size_t column = 0; column < field.columns(); ++column) {
+      const double z = double{field.at(column, row)};
+      if (column + 1 < field.columns()) add(double{field.at(column + 1, row)} - z, per_x);
+      if (row + 1 < field.rows()) add(double{field.at(column, row + 1)} - z, per_y);
+    }
+  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+}
+
 }  // namespace
+
+std::string fill_warning(const HeightField& before, const HeightField& filled) {
+  constexpr double noticeable = 0.01;
+  const double measured = rms_slope(before), whole = rms_slope(filled);
+  if (whole > (1.0 - noticeable) * measured) return "";
+  return fmt::format(
+      "what was filled ({:.3g} % of the samples) is smoother than the surface: slopes of the whole are {:.2g} % "
+      "smaller "
+      "than those that were measured, heights {:.2g} %. Holes are wider than the features; leave them missing for "
+      "roughness",
+      100.0 * static_cast<double>(before.missing_count()) / static_cast<double>(before.grid().size()),
+      100.0 * (1.0 - whole / measured),
+      100.0 * (1.0 - root_mean_square_height(filled) / root_mean_square_height(before)));
+}
 
 HeightField fill_missing(const HeightField& field) {
   const std::size_t missing = field.missing_count();

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "forward/base/error.h"
 
 namespace mezzotint {
@@ -59,6 +61,28 @@ std::size_t mark(const HeightField& field, const Base& base, std::vector<std::ui
   return changed;
 }
 
+// Of the samples that are not base, the share that lies below it.
+double share_below(const HeightField& flat, const std::vector<std::uint8_t>& base) {
+  double below = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < base.size(); ++i) {
+    const float z = flat.heights_um()[i];
+    if (base[i] != 0 || std::isnan(z)) continue;
+    all += 1.0;
+    below += z < 0.0F ? 1.0 : 0.0;
+  }
+  return all > 0.0 ? below / all : 0.0;
+}
+
+std::string warning_of(const FlattenedBase& flat, double below) {
+  constexpr double most = 0.75, mostly = 0.9;
+  if (!flat.settled) return "the base did not settle: it may not be what most of the surface is; look at the result";
+  if (flat.base_share >= most || below < mostly) return "";
+  return fmt::format(
+      "what was taken for the base is {:.0f} % of the samples, and the others lie below it: plateaus that cover more "
+      "than half of a surface are taken for its base. Crop a part with more base, or level by a plane",
+      100.0 * flat.base_share);
+}
+
 }  // namespace
 
 FlattenedBase flatten_base(const HeightField& field, int degree) {
@@ -78,6 +102,7 @@ FlattenedBase flatten_base(const HeightField& field, int degree) {
     }
   }
   result.base_share = static_cast<double>(std::count(use.begin(), use.end(), 1)) / measured;
+  result.warning = warning_of(result, share_below(result.field, use));
   return result;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "forward/surface/height_field.h"
 #include "measurement/correction/polynomial.h"
 
@@ -11,6 +13,9 @@ struct FlattenedBase {
   double base_share = 0.0;  ///< of the measured samples that the last polynomial was fitted to
   int iterations = 0;
   bool settled = false;  ///< whether the base stayed the same (to 1e-3 of its samples) in the last step
+  /// What speaks against what was taken for the base: it did not settle, or more than a quarter of the surface lies
+  /// below it. Empty where nothing does.
+  std::string warning;
 };
 
 /// Levels by a polynomial through the base alone: the samples around the most frequent height. Bumps and pits do not

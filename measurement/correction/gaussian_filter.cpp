@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
@@ -195,6 +196,41 @@ HeightField l_filter(const HeightField& field, Length cutoff) {
   const auto smooth_um = result.heights_um();
   for (std::size_t i = 0; i < heights_um.size(); ++i) smooth_um[i] = heights_um[i] - smooth_um[i];
   return result;
+}
+
+namespace {
+
+// Of a wave as long as the cut-off, by the weights at whole samples alone.
+double passed_at_cutoff(double cutoff_in_samples) {
+  const double alpha = std::sqrt(std::numbers::ln2 / std::numbers::pi);
+  double passed = 1.0, sum = 1.0;
+  for (int k = 1; k <= std::ceil(reach_in_cutoffs * cutoff_in_samples); ++k) {
+    const double x = k / (alpha * cutoff_in_samples), weight = 2.0 * std::exp(-std::numbers::pi * x * x);
+    passed += weight * std::cos(2.0 * std::numbers::pi * k / cutoff_in_samples);
+    sum += weight;
+  }
+  return passed / sum;
+}
+
+}  // namespace
+
+std::string filter_warning(const HeightField& field, Length cutoff) {
+  const Grid& grid = field.grid();
+  const double spacing = std::max(grid.pitch_x.um(), grid.pitch_y.um());
+  const double side = std::min(static_cast<double>(grid.columns) * grid.pitch_x.um(),
+                               static_cast<double>(grid.rows) * grid.pitch_y.um());
+  if (cutoff.um() > side)
+    return fmt::format(
+        "the cut-off of {:.4g} um is longer than the field ({:.4g} um): waves so long are not in it, and a plane is "
+        "nearly all that is smoother",
+        cutoff.um(), side);
+  constexpr double most = 0.55, far = 10.0;
+  const double samples = cutoff.um() / spacing, passed = samples > far ? 0.5 : passed_at_cutoff(samples);
+  if (passed < most) return "";
+  return fmt::format(
+      "the cut-off of {:.4g} um is {:.2g} spacings: {:.0f} % of a wave that long passes, where half should; a filter "
+      "needs a cut-off of four spacings",
+      cutoff.um(), samples, 100.0 * passed);
 }
 
 }  // namespace mezzotint

@@ -21,7 +21,8 @@ struct OutlierResult {
 /// Samples further than `k` standard deviations from the mean (after the least-squares plane) become missing.
 ///
 /// Valid    surfaces with nearly Gaussian heights. On others (bumps on a base, ridges) the highest features themselves
-///          lie further off; that is noticed by how many go and by their lying together, and said in `warning`.
+///          lie further off; that is noticed by how many go, by their lying together and by their all being on one
+///          side, and said in `warning`.
 /// @throws  InvalidInput for k not in [1, 100].
 [[nodiscard]] OutlierResult mask_outliers(const HeightField& field, double k);
 

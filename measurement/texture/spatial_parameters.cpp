@@ -82,6 +82,7 @@ HeightField block_of(const HeightField& field, std::size_t block) {
 /// Sal and Str without one block each, from the mean of the other blocks' autocorrelations about the whole mean.
 struct Jackknife {
   double sal = nan, str = nan;
+  double str_of_blocks = nan;  ///< mean over single blocks
 };
 
 Jackknife jackknife(const HeightField& field, double sal_um) {
@@ -120,13 +121,29 @@ Jackknife jackknife(const HeightField& field, double sal_um) {
   };
   const Extremes whole = decays(mean_without(block_count));
   std::array<double, block_count> sal{}, str{};
+  double own_str = 0.0, own = 0.0;
   for (std::size_t block = 0; block < block_count; ++block) {
+    if (samples[block] > 0.0) {
+      const Extremes alone = decays(blocks[block]);
+      own_str += alone.any ? alone.shortest / alone.longest : 1.0;
+      own += 1.0;
+    }
     const Extremes without = samples[block] > 0.0 ? decays(mean_without(block)) : whole;
     sal[block] = without.shortest;
     str[block] = without.shortest / without.longest;
   }
   return {jackknife_standard_error(whole.shortest, sal, samples),
-          whole.all ? jackknife_standard_error(whole.shortest / whole.longest, str, samples) : nan};
+          whole.all ? jackknife_standard_error(whole.shortest / whole.longest, str, samples) : nan, own_str / own};
+}
+
+// A lay that turns, or several: each block has one, the whole has none.
+std::string turning_note(double whole, double of_blocks) {
+  constexpr double much = 2.5;
+  if (!(whole > much * of_blocks)) return "";
+  return fmt::format(
+      "Str is {:.2g}, but {:.2g} on average within a sixteenth of the field: the lay turns across it, and Str and Std "
+      "describe no part of it. Take a part (correct --crop)",
+      whole, of_blocks);
 }
 
 }  // namespace
@@ -147,6 +164,7 @@ SpatialParameters spatial_parameters(const HeightField& field) {
     result.note =
         "the autocorrelation does not fall to 0.2 within half of the field in any direction: measure a larger one";
   }
+  if (result.note.empty()) result.note = turning_note(result.Str.value, errors.str_of_blocks);
   result.Std = {nan, "°", nan};
   if (field.missing_count() == 0) {
     const AngularSpectrum angular = angular_spectrum(power_spectrum(field));

@@ -16,6 +16,8 @@ namespace mezzotint {
 ///       the lay, like `direction_deg` of ridges. Means nothing where Str is near 1.
 /// Ends  where the autocorrelation does not fall to 0.2 within half of the field in some direction, the longest way is
 ///       at least that half: Str is then an upper bound, said in `note`. Where it falls in none, Sal is NaN.
+/// Lay   that turns across the field gives a Str near 1 of parts that are directional each; said in `note` where Str is
+///       2.5 times its mean over 16 blocks.
 /// Standard errors: delete-one-block jackknife over 16 blocks, each with the pairs within it, so only where Sal is
 ///       below a quarter of a block's side; NaN elsewhere.
 /// Source ISO 25178-2:2021, 4.2, with the threshold 0.2.
