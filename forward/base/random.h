@@ -20,7 +20,9 @@ enum class RandomPurpose : std::uint32_t {
   PatternPart = 10,
   Pilot = 11,
   InstrumentOutlier = 12,
-  InstrumentHole = 13
+  InstrumentHole = 13,
+  StudySample = 14,
+  StudyTexture = 15
 };
 
 /// Random numbers by counter: a pure function of (seed, purpose, index, draw). No state is shared,
