@@ -81,8 +81,9 @@ HeightField fill_by_plane(const HeightField& field) {
   const FieldPoint middle = middle_of(field.grid());
   HeightField filled = field;
   for (const std::size_t i : missing_samples(field)) {
-    const double x = static_cast<double>(i % field.columns()) * field.grid().pitch_x.um() - middle.x_um;
-    const double y = static_cast<double>(i / field.columns()) * field.grid().pitch_y.um() - middle.y_um;
+    const std::size_t column = i % field.columns(), row = i / field.columns();
+    const double x = static_cast<double>(column) * field.grid().pitch_x.um() - middle.x_um;
+    const double y = static_cast<double>(row) * field.grid().pitch_y.um() - middle.y_um;
     filled.heights_um()[i] = static_cast<float>(plane.offset.um() + plane.slope_x * x + plane.slope_y * y);
   }
   return filled;

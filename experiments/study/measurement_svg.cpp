@@ -63,15 +63,16 @@ std::string measurement_svg(const MeasurementStudyOptions& options, const std::v
   }
   const Words words = words_of(question);
   const std::vector<std::string>& methods = methods_for(question);
-  const std::size_t columns = count / surfaces.size();
+  const std::size_t columns = count / std::max<std::size_t>(1, surfaces.size());
   SvgFigure figure(columns, surfaces.size(), axes_about(all), Naming::InTheLegendAlone);
-  std::size_t k = 0;
+  std::size_t column = 0, row = 0;
   for (const MeasurementPanel& panel : panels) {
     if (panel.question != question) continue;
     const std::string length = fmt::format(fmt::runtime(words.length), panel.length_um);
     const std::string title = surfaces.size() > 1 ? panel.surface + ", " + length : length;
-    figure.add(k % columns, k / columns, title, panel.points, methods);
-    ++k;
+    figure.add(column, row, title, panel.points, methods);
+    row += column + 1 == columns ? 1 : 0;
+    column = column + 1 == columns ? 0 : column + 1;
   }
   return figure.text(fmt::format("{}, {}² samples 1 µm apart", words.title, options.cells), legend_of(methods),
                      words.error);

@@ -10,8 +10,8 @@ namespace mezzotint {
 /// How      the pupil's disc and its mirror image overlap; a facet at the angle β moves the image by sin β/NA of a
 ///          diameter (exact at either end, and to first order between them).
 /// Units    slope = tan β; a numerical aperture in (0, 1].
-/// Source   ISO 25178-600:2019 and 25178-607:2019: the steepest facet that a coaxial instrument sees without scattered
-///          light is at arcsin(NA).
+/// Source   the geometry of a coaxial instrument over a mirror; its end is the acceptance angle arcsin(NA) of data
+/// sheets.
 [[nodiscard]] double light_collected(double slope, double numerical_aperture);
 
 /// A probability that goes wrong with little light: its odds grow as 1 ÷ light. The same at light 1; 1 without light.
