@@ -18,7 +18,8 @@ enum class RandomPurpose : std::uint32_t {
   InstrumentNoise = 8,
   Test = 9,
   PatternPart = 10,
-  Pilot = 11
+  Pilot = 11,
+  TextureDraw = 12
 };
 
 /// Random numbers by counter: a pure function of (seed, purpose, index, draw). No state is shared,

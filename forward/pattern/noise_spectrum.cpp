@@ -76,12 +76,14 @@ double cubic(double a, double b, double c, double d, double t) {
 
 double noise_spectral_density(double f_x, double f_y) {
   static const std::vector<Entry> table = made_table();
-  const double place = std::hypot(f_x, f_y) * per_cell;
-  if (!(place < highest * per_cell)) return 0.0;
+  const double square = f_x * f_x + f_y * f_y;
+  if (!(square < highest * highest)) return 0.0;
+  const double place = std::sqrt(square) * per_cell;
   const auto i = static_cast<std::size_t>(place);
   const double t = place - static_cast<double>(i);
   const Entry &a = table[i], &b = table[i + 1], &c = table[i + 2], &d = table[i + 3];
   const double free = cubic(a.free, b.free, c.free, d.free, t);
+  if (square > 9.0) return free;  // the rest is below 1e-6 of it
   const double bound = cubic(a.bound, b.bound, c.bound, d.bound, t);
   return free - bound * square_sinc(f_x) * square_sinc(f_y);
 }
