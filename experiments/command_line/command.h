@@ -53,6 +53,7 @@ Command add_convert(CLI::App& program);
 Command add_correct(CLI::App& program);
 Command add_roughness(CLI::App& program);
 Command add_synthesize(CLI::App& program);
+Command add_texture_fit(CLI::App& program);
 Command add_mesh(CLI::App& program);
 Command add_bsdf(CLI::App& program);
 Command add_bsdf_table(CLI::App& program);

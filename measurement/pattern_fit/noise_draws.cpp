@@ -74,4 +74,22 @@ NoiseDraws draw_noise(const FitView& view, const NoiseFit& fit, const NoiseSearc
   return result;
 }
 
+double probability_of_stretch(const NoiseFit& fit, const NoiseDraws& draws) {
+  const auto n = static_cast<double>(draws.numbers.size());
+  double c = 0.0, s = 0.0, cc = 0.0, ss = 0.0, cs = 0.0;
+  for (const NoiseNumbers& drawn : draws.numbers) {
+    c += drawn.stretch_cos / n;
+    s += drawn.stretch_sin / n;
+  }
+  for (const NoiseNumbers& drawn : draws.numbers) {
+    cc += (drawn.stretch_cos - c) * (drawn.stretch_cos - c) / (n - 1.0);
+    ss += (drawn.stretch_sin - s) * (drawn.stretch_sin - s) / (n - 1.0);
+    cs += (drawn.stretch_cos - c) * (drawn.stretch_sin - s) / (n - 1.0);
+  }
+  const double a = fit.numbers.stretch_cos, b = fit.numbers.stretch_sin;
+  const double square = (a * a * ss - 2.0 * a * b * cs + b * b * cc) / (cc * ss - cs * cs) / (1.0 + 1.0 / n);
+  // T² (n − 2)/(2 (n − 1)) is F with 2 and n − 2 degrees of freedom, whose tail is closed.
+  return std::pow(1.0 + square / (n - 1.0), -0.5 * (n - 2.0));
+}
+
 }  // namespace mezzotint

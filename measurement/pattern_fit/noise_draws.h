@@ -25,4 +25,8 @@ struct NoiseDraws {
                                     const FigureTaker& taker, std::size_t draws, std::uint64_t seed,
                                     const Progress& progress);
 
+/// How probable so much stretch is for a pattern without any, by the scatter of the draws' own (Hotelling's T²; the
+/// likelihood alone would take impulses for Gaussian and find stretch too often).
+[[nodiscard]] double probability_of_stretch(const NoiseFit& fit, const NoiseDraws& draws);
+
 }  // namespace mezzotint

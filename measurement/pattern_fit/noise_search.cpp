@@ -13,7 +13,7 @@ namespace mezzotint {
 namespace {
 
 constexpr int most_octaves = 8;
-constexpr double rough = 0.1;  // gain of a round that ends the first fits
+constexpr double rough = 1.0;  // gain of a round that ends the first fits
 
 // Every so manieth block, so that about `count` are left.
 std::vector<std::size_t> some_of(const FitView& view, std::size_t count) {
@@ -169,12 +169,9 @@ constexpr double least_gain_of_stretch = 9.21;
 
 void try_without_stretch(NoiseSearch& search) {
   const NoiseFit& best = search.fits.front();
-  NoiseModel round = best.model;
-  round.stretched = false;
-  NoiseNumbers start = best.numbers;
-  start.stretch_cos = start.stretch_sin = 0.0;
-  NoiseFit fit = maximise(round, start, search.seen);
-  if (2.0 * (best.log_likelihood - fit.log_likelihood) < least_gain_of_stretch) search.fits.front() = std::move(fit);
+  NoiseFit round = without_stretch(best, search.seen);
+  if (2.0 * (best.log_likelihood - round.log_likelihood) < least_gain_of_stretch)
+    search.fits.front() = std::move(round);
 }
 
 }  // namespace
@@ -187,6 +184,14 @@ SeenSpectrum spectrum_of(const FitView& view, const std::vector<double>& density
     seen.density_um4.push_back(density_um4[i]);
   }
   return seen;
+}
+
+NoiseFit without_stretch(const NoiseFit& fit, const SeenSpectrum& seen) {
+  NoiseModel round = fit.model;
+  round.stretched = false;
+  NoiseNumbers start = fit.numbers;
+  start.stretch_cos = start.stretch_sin = 0.0;
+  return maximise(round, start, seen);
 }
 
 double penalised(const NoiseFit& fit, const SeenSpectrum& seen) {

@@ -25,6 +25,9 @@ struct NoiseSearch {
 /// What a likelihood loses for its free numbers: half of ln(frequencies) for each (Schwarz 1978).
 [[nodiscard]] double penalised(const NoiseFit& fit, const SeenSpectrum& seen);
 
+/// The same pattern, alike in all directions.
+[[nodiscard]] NoiseFit without_stretch(const NoiseFit& fit, const SeenSpectrum& seen);
+
 struct WantedNoise {
   bool noise = true, fbm = true;
 };

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -21,6 +23,7 @@ constexpr double least_cells = 8.0;
 constexpr double least_waves = 2.5;
 constexpr double negligible_share = 1e-4;  // of the mean square, left over by lines: 1 % of the height's RMS
 constexpr double least_gain_over_white = 10.0;
+constexpr double probability_of_chance_stretch = 0.01;
 
 bool is_wanted(const PatternFitOptions& options, std::string_view kind) {
   return options.kinds.empty() || std::ranges::find(options.kinds, kind) != options.kinds.end();
@@ -165,15 +168,23 @@ void conclude(const NoiseSearch& search, const PatternFitOptions& options, const
 PatternFit fit_noise(const FitView& view, const HeightField& seen, const PatternFitOptions& options,
                      const Progress& progress) {
   const std::vector<double> density = view.periodogram(seen);
-  const NoiseSearch search =
-      search_noise(view, density, {is_wanted(options, "noise"), is_wanted(options, "fbm")}, progress);
+  NoiseSearch search = search_noise(view, density, {is_wanted(options, "noise"), is_wanted(options, "fbm")}, progress);
+  const auto redraw = [&] {
+    const FigureTaker taker(view, search.fits.front(), density, search.used);
+    return std::pair{taker.figures(seen, density, search.fits.front().numbers),
+                     draw_noise(view, search.fits.front(), search, taker, options.draws, options.seed, progress)};
+  };
+  auto [figures, draws] = redraw();
+  if (search.fits.front().model.stretched &&
+      probability_of_stretch(search.fits.front(), draws) > probability_of_chance_stretch) {
+    search.fits.front() = without_stretch(search.fits.front(), search.seen);
+    std::tie(figures, draws) = redraw();
+  }
   const NoiseFit& best = search.fits.front();
-  const FigureTaker taker(view, best, density, search.used);
-  const NoiseDraws draws = draw_noise(view, best, search, taker, options.draws, options.seed, progress);
   PatternFit fit;
   report_parameters(best, draws, fit);
   report_alternatives(search, fit);
-  judge(taker.figures(seen, density, best.numbers), draws, fit);
+  judge(figures, draws, fit);
   conclude(search, options, view.grid(), fit);
   const double sample = view.grid().pitch_x.um() * view.grid().pitch_y.um();
   const double rms = std::sqrt(draws.white_um4 / sample);

@@ -9,7 +9,7 @@ namespace mezzotint {
 
 namespace {
 
-constexpr int most_rounds = 40;
+constexpr int most_rounds = 25;
 constexpr double enough = 1e-4;  // gain of the log-likelihood below which a round was the last
 
 NoiseNumbers bounded(NoiseNumbers numbers, const Grid& grid) {

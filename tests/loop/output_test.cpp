@@ -18,6 +18,7 @@ const std::vector<std::string> every_command = {
     "synthesize pattern.toml -o relief.gwy",
     "info relief.gwy",
     "roughness relief.gwy",
+    "texture-fit relief.gwy -o fitted.toml",
     "correct relief.gwy -o corrected.gwy --level plane",
     "convert relief.gwy relief.obj",
     "mesh relief.gwy -o mesh.obj",
