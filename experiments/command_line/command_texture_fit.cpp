@@ -125,7 +125,7 @@ Command add_texture_fit(CLI::App& program) {
       ->check(CLI::IsMember({"noise", "fbm", "sinusoid", "ridges"}));
   app->add_option("--draws", arguments->options.draws,
                   "Reliefs drawn of a fitted noise, for intervals and judgement (default 40)")
-      ->check(CLI::Range(16, 1000));
+      ->check(CLI::Range(24, 1000));
   app->add_option("--false-alarm", arguments->options.false_alarm,
                   "How often a texture that is such a pattern may be sent away (default 0.01)")
       ->check(in_range(1e-6, 0.5));

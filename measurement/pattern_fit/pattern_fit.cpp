@@ -37,7 +37,7 @@ void check(const HeightField& scan, const PatternFitOptions& options) {
                       scan.grid().size()));
   const HeightRange range = height_range(scan);
   require(range.highest > range.lowest, "the relief is flat: there is no texture to fit");
-  require(options.draws >= 16 && options.draws <= 1000, "a texture fit makes 16 to 1000 draws");
+  require(options.draws >= 24 && options.draws <= 1000, "a texture fit makes 24 to 1000 draws");
   require(options.false_alarm >= 1e-6 && options.false_alarm <= 0.5, "a rate of false alarms is in [1e-6, 0.5]");
   constexpr std::array<std::string_view, 4> known = {"noise", "fbm", "sinusoid", "ridges"};
   for (const std::string& kind : options.kinds) {

@@ -46,7 +46,7 @@ struct PatternFit {
   std::vector<std::string> notes;
 };
 
-/// draws        reliefs that are synthesized with the fitted pattern and looked at like the scan, 16 … 1000
+/// draws        reliefs that are synthesized with the fitted pattern and looked at like the scan, 24 … 1000
 /// false_alarm  how often a texture that is such a pattern may be sent away, 1e-6 … 0.5
 /// kinds        which patterns are tried: "noise", "fbm", "sinusoid", "ridges"; empty: all
 struct PatternFitOptions {

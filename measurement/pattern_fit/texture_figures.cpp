@@ -175,7 +175,10 @@ double probability_among(const std::vector<double>& seen, const std::vector<std:
     square += own * own;
   }
   const double mean = sum / n, variance = std::max(1e-24, (square - n * mean * mean) / (n - 1.0));
-  const double shape = mean * mean / variance;
+  // Few draws may look less scattered than they are: no less is believed than what Fisher's F for as many independent
+  // figures would scatter.
+  const auto figures = static_cast<double>(seen.size());
+  const double shape = std::min(mean * mean / variance, 0.5 * figures * (n - 6.0) / (n + figures - 4.0));
   // Wilson and Hilferty 1931: the cube root of a gamma variable is nearly normal.
   const double root = std::cbrt(distance(seen, drawn, drawn.size()) / mean);
   return 0.5 * std::erfc((root - 1.0 + 1.0 / (9.0 * shape)) * 3.0 * std::sqrt(shape) / std::numbers::sqrt2);

@@ -64,41 +64,6 @@ PowerSpectrum power_spectrum(const HeightField& field) {
   return result;
 }
 
-RadialSpectrum radial_spectrum(const PowerSpectrum& spectrum) {
-  const double length = std::max(static_cast<double>(spectrum.columns) * spectrum.pitch_x.um(),
-                                 static_cast<double>(spectrum.rows) * spectrum.pitch_y.um());
-  const double step = 1.0 / length;
-  struct Ring {
-    double count = 0.0, frequency = 0.0, sum = 0.0, squares = 0.0;
-  };
-  std::vector<Ring> rings;
-  for (std::size_t row = 0; row < spectrum.rows; ++row)
-    for (std::size_t column = 0; column < spectrum.columns; ++column) {
-      const double f = std::hypot(spectrum.frequency_x_per_um(column), spectrum.frequency_y_per_um(row));
-      const auto ring = static_cast<std::size_t>(std::lround(f / step));
-      if (ring == 0) continue;
-      if (ring >= rings.size() + 1) rings.resize(ring);
-      const double density = spectrum.density_um4[row * spectrum.columns + column];
-      Ring& at = rings[ring - 1];
-      at.count += 1.0;
-      at.frequency += f;
-      at.sum += density;
-      at.squares += density * density;
-    }
-  RadialSpectrum result;
-  for (const Ring& ring : rings) {
-    if (ring.count == 0.0) continue;
-    const double mean = ring.sum / ring.count, independent = std::max(1.0, 0.5 * ring.count);
-    const double variance = std::max(0.0, ring.squares / ring.count - mean * mean);
-    result.frequency_per_um.push_back(ring.frequency / ring.count);
-    result.density_um4.push_back(mean);
-    // A pair alone has no scatter of its own: its mean is its deviation.
-    result.standard_error_um4.push_back(ring.count > 2.0 ? std::sqrt(variance / std::max(1.0, independent - 1.0))
-                                                         : mean);
-  }
-  return result;
-}
-
 AngularSpectrum angular_spectrum(const PowerSpectrum& spectrum, double least_per_um, std::size_t directions) {
   require(directions >= 2 && directions <= 3600, "an angular spectrum has 2 to 3600 directions");
   AngularSpectrum result{std::vector<double>(directions, 0.0)};

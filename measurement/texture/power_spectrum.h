@@ -7,7 +7,7 @@
 
 namespace mezzotint {
 
-/// The areal power spectral density of heights, and what it is averaged over rings and along directions.
+/// The areal power spectral density of heights, and what it is along directions.
 ///
 /// Frame    spatial frequencies in cycles a µm; frequency (k_x − columns/2)/(columns·pitch_x) in column k_x, rows
 ///          likewise, so that 0 stands in column columns/2. S(−f) = S(f).
@@ -32,15 +32,6 @@ struct PowerSpectrum {
 
 /// @throws InvalidInput for a field with missing samples (fill them first), or with fewer than 4 × 4.
 [[nodiscard]] PowerSpectrum power_spectrum(const HeightField& field);
-
-/// Mean density over rings |f|, one frequency step (of the longer side) wide each; the mean's standard error from the
-/// scatter within the ring (each frequency of a Gaussian surface is exponentially distributed and independent of the
-/// others; S(−f) = S(f) counts once).
-struct RadialSpectrum {
-  std::vector<double> frequency_per_um;
-  std::vector<double> density_um4, standard_error_um4;
-};
-[[nodiscard]] RadialSpectrum radial_spectrum(const PowerSpectrum& spectrum);
 
 /// Power by the direction of the wave vector, from 0° up to, but not including, 180°, counter-clockwise from +x: shares
 /// of Sq² that sum to 1. Frequencies below `least_per_um` are left out (form, window).

@@ -33,14 +33,14 @@ const FittedParameter& named(const PatternFit& fit, const char* name) {
 
 bool covers(const FittedParameter& found, double truth) { return *found.low_95 <= truth && truth <= *found.high_95; }
 
-// Five standard errors: with 19 degrees of freedom a false alarm in 12 000.
+// Five standard errors: with 23 degrees of freedom a false alarm in 20 000.
 void expect_found(const PatternFit& fit, const char* name, double truth) {
   const FittedParameter& found = named(fit, name);
   ASSERT_TRUE(found.quantity.standard_error) << name;
   EXPECT_NEAR(found.quantity.value, truth, 5.0 * *found.quantity.standard_error) << name;
 }
 
-const PatternFitOptions noise_alone{.kinds = {"noise"}, .draws = 20};
+const PatternFitOptions noise_alone{.kinds = {"noise"}, .draws = 24};
 
 // Patches of 32 cells with five samples each. Of 20 intervals of 95 % fewer than 16 hold the truth once in 390 times.
 // A height that is known worse than 3 % would need a patch of fewer cells.
@@ -75,7 +75,7 @@ TEST(TextureFit, SeesStretchDirectionAndNoiseOfTheInstrument) {
 // Noise alone, or of another number of octaves, competes.
 TEST(TextureFit, CountsOctavesAndFindsHurstsExponent) {
   const FractionalBrownianMotion truth{.scale = 40.0_um, .height = 10.0_um, .hurst = 0.4, .octaves = 2, .seed = 9};
-  const PatternFit fit = fit_pattern(synthesize(truth, grid_of(256, 5.0)), {.kinds = {"noise", "fbm"}, .draws = 16});
+  const PatternFit fit = fit_pattern(synthesize(truth, grid_of(256, 5.0)), {.kinds = {"noise", "fbm"}, .draws = 40});
   EXPECT_TRUE(fit.fits) << fit.verdict;
   ASSERT_TRUE(std::holds_alternative<FractionalBrownianMotion>(fit.pattern)) << fit.verdict;
   EXPECT_EQ(std::get<FractionalBrownianMotion>(fit.pattern).octaves, 2);
@@ -171,7 +171,9 @@ TEST(TextureFit, SaysThatNoPatternFitsWhatIsNone) {
   const HeightField white = gaussian_field(128, [](double) { return 1.0; });
   const std::array fields = {blocks, band, bell, white};
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    const PatternFit fit = fit_pattern(fields.at(i), {.draws = 16});
+    // The bell is where a sum of octaves comes nearest; it takes the longest, too.
+    const PatternFitOptions all, few{.kinds = {"noise", "sinusoid", "ridges"}, .draws = 24};
+    const PatternFit fit = fit_pattern(fields.at(i), i == 2 ? all : few);
     EXPECT_FALSE(fit.fits) << i << ": " << fit.verdict;
     EXPECT_TRUE(fit.verdict.starts_with("no pattern fits")) << fit.verdict;
   }
@@ -180,7 +182,7 @@ TEST(TextureFit, SaysThatNoPatternFitsWhatIsNone) {
 TEST(TextureFit, SaysThatNoPatternFitsASurfaceThatWasGround) {
   const auto path = test::external_data_folder() / "surface" / "surfalize_test_2.opd";
   MEZZOTINT_NEEDS_DATA(path);
-  const PatternFit fit = fit_pattern(read_surface(path).field, {.draws = 16});
+  const PatternFit fit = fit_pattern(crop(read_surface(path).field, 200, 100, 160, 160), {.draws = 24});
   EXPECT_FALSE(fit.fits) << fit.verdict;
 }
 
