@@ -48,7 +48,7 @@ struct PatternFit {
 
 /// draws        reliefs that are synthesized with the fitted pattern and looked at like the scan, 24 … 1000
 /// false_alarm  how often a texture that is such a pattern may be sent away, 1e-6 … 0.5 (docs/physics.md has how
-///              often it was: of noise 3 % where 1 % was asked for)
+///              often it was: of noise 3 %, of fBm 6 % where 1 % was asked for)
 /// kinds        which patterns are tried: "noise", "fbm", "sinusoid", "ridges"; empty: all
 struct PatternFitOptions {
   std::vector<std::string> kinds;
