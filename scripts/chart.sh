@@ -7,6 +7,6 @@ build release mezzotint
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 build/release/mezzotint chart -o "$out"
-build/release/mezzotint chart -o "$out/large" --families gaussian --gradients 0.3 --incidences 60 --cells 4096
+build/release/mezzotint chart -o "$out/large" --subject scattering --families gaussian --gradients 0.3 --incidences 60 --cells 4096
 cp "$out"/chart_*.svg docs/images/
 cp "$out/large/chart_gaussian.svg" docs/images/chart_large.svg

@@ -7,6 +7,7 @@
 
 #include "experiments/command_line/command.h"
 #include "experiments/command_line/option_checks.h"
+#include "experiments/study/measurement_study.h"
 #include "experiments/study/scene.h"
 #include "experiments/study/study.h"
 #include "experiments/study/study_page.h"
@@ -20,6 +21,7 @@ namespace mezzotint {
 namespace {
 
 struct ChartArguments {
+  std::string subject = "all";
   std::string output = "chart";
   std::string material = "dielectric:1.5";
   std::string scan;
@@ -80,6 +82,35 @@ void write_figures(const StudyOptions& options, const std::vector<StudyPoint>& p
   write_file(folder / "chart_choices.svg", study_choices_svg(options, points));
 }
 
+/// What a part of the chart left.
+struct ChartPart {
+  std::size_t points = 0;
+  nlohmann::json numbers;
+};
+
+ChartPart chart_scattering(const ChartArguments& arguments, const CommandContext& context) {
+  const std::filesystem::path folder = arguments.output;
+  const StudyOptions options = options_of(arguments, context.common.seed);
+  const auto points = run_study(options, context.progress);
+  write_report(study_page(options, points), folder / "chart.html");
+  write_figures(options, points, folder);
+  return {points.size(), to_json(options, points)};
+}
+
+ChartPart chart_measurement(const ChartArguments& arguments, const CommandContext& context) {
+  // Relaxation of wide holes takes the fourth power of the side.
+  constexpr std::size_t most_cells = 512;
+  MeasurementStudyOptions options{.cells = std::min(arguments.cells, most_cells)};
+  if (context.common.seed >= 0) options.seed = static_cast<std::uint64_t>(context.common.seed);
+  const auto panels = run_measurement_study(options, context.progress);
+  for (const MeasurementQuestion question : measurement_questions())
+    write_file(std::filesystem::path(arguments.output) / fmt::format("chart_{}.svg", in_words(question)),
+               measurement_svg(options, panels, question));
+  std::size_t points = 0;
+  for (const MeasurementPanel& panel : panels) points += panel.points.size();
+  return {points, to_json(panels)};
+}
+
 CLI::Validator known_relief() {
   std::vector<std::string> names = relief_families();
   names.emplace_back("scan");
@@ -88,6 +119,9 @@ CLI::Validator known_relief() {
 
 void add_arguments(CLI::App& app, ChartArguments& arguments) {
   app.add_option("--output,-o", arguments.output, "Folder for chart.html, chart.json and the figures (default chart)");
+  app.add_option("--subject", arguments.subject,
+                 "scattering, measurement (filling, filtering, roughness of a part of the samples), or all (default)")
+      ->check(CLI::IsMember({"all", "scattering", "measurement"}));
   app.add_option("--material", arguments.material, "As for bsdf (default dielectric:1.5)");
   app.add_option("--families", arguments.families,
                  "Reliefs, comma separated: gaussian, noise, sinusoid, ridges, scan (these by default), bumps, "
@@ -103,7 +137,8 @@ void add_arguments(CLI::App& app, ChartArguments& arguments) {
   app.add_option("--incidences", arguments.thetas_deg, "Angles from the normal in degrees (default 0,30,60,85)")
       ->delimiter(',')
       ->check(in_range(0.0, 89.0));
-  app.add_option("--cells", arguments.cells, "Cells a side of the reliefs (default 512)")->check(CLI::Range(64, 8192));
+  app.add_option("--cells", arguments.cells, "Cells a side of the reliefs (default 512; measurement takes 512 at most)")
+      ->check(CLI::Range(64, 8192));
   app.add_option("--resolution", arguments.resolution, "Bins a side of the maps (default 64)")
       ->check(CLI::Range(8, 1024));
   app.add_option("--tolerance", arguments.auto_tolerances,
@@ -115,27 +150,35 @@ void add_arguments(CLI::App& app, ChartArguments& arguments) {
 }  // namespace
 
 Command add_chart(CLI::App& program) {
-  auto* app =
-      program.add_subcommand("chart", "Error against time for every method, on a set of reliefs; takes minutes");
+  auto* app = program.add_subcommand(
+      "chart",
+      "Error against time for every method, of scattering on a set of reliefs and of measurement; takes minutes");
   auto arguments = std::make_shared<ChartArguments>();
   add_arguments(*app, *arguments);
-  return {app, [arguments](const CommandContext& context) {
-            const StudyOptions options = options_of(*arguments, context.common.seed);
-            const std::filesystem::path folder = arguments->output;
-            std::filesystem::create_directories(folder);
-            const auto points = run_study(options, context.progress);
-            nlohmann::json numbers = to_json(options, points);
-            numbers["peak_memory_mib"] = peak_memory_mib();
-            write_file(folder / "chart.json", numbers.dump(1) + "\n");
-            write_report(study_page(options, points), folder / "chart.html");
-            write_figures(options, points, folder);
-            context.print({{"written", (folder / "chart.html").string()},
-                           {"points", points.size()},
-                           {"peak_memory", Quantity{peak_memory_mib(), "MiB", {}}}},
-                          fmt::format("wrote {} with {} points, chart.json and the figures; at most {:.0f} MiB held",
-                                      (folder / "chart.html").string(), points.size(), peak_memory_mib()));
-            return ExitStatus::Done;
-          }};
+  return {
+      app, [arguments](const CommandContext& context) {
+        const std::filesystem::path folder = arguments->output;
+        std::filesystem::create_directories(folder);
+        nlohmann::json numbers = nlohmann::json::object();
+        std::size_t points = 0;
+        if (arguments->subject != "measurement") {
+          const ChartPart part = chart_scattering(*arguments, context);
+          numbers = part.numbers;
+          points += part.points;
+        }
+        if (arguments->subject != "scattering") {
+          const ChartPart part = chart_measurement(*arguments, context);
+          numbers["measurement"] = part.numbers;
+          points += part.points;
+        }
+        numbers["peak_memory_mib"] = peak_memory_mib();
+        write_file(folder / "chart.json", numbers.dump(1) + "\n");
+        context.print(
+            {{"written", folder.string()}, {"points", points}, {"peak_memory", Quantity{peak_memory_mib(), "MiB", {}}}},
+            fmt::format("wrote {} points as figures and chart.json into {}; at most {:.0f} MiB held", points,
+                        folder.string(), peak_memory_mib()));
+        return ExitStatus::Done;
+      }};
 }
 
 }  // namespace mezzotint

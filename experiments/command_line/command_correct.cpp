@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -39,10 +40,14 @@ void set(Correction& c, HeightField&& field, std::string words) {
   c.done.push_back(std::move(words));
 }
 
+void warn(Correction& c, std::string warning) {
+  if (!warning.empty()) c.warnings.push_back(std::move(warning));
+}
+
 void take_out(Correction& c, OutlierResult&& result, const std::string& words) {
   c.field = std::move(result.field);
   c.done.push_back(fmt::format("{}: {} samples ({:.3g} %) taken out", words, result.removed, 100.0 * result.share));
-  if (!result.warning.empty()) c.warnings.push_back(result.warning);
+  warn(c, std::move(result.warning));
 }
 
 // X,Y,W,H, checked before.
@@ -59,18 +64,49 @@ void crop_to(Correction& c, const std::string& text) {
       fmt::format("cropped to {} x {} samples from ({}, {})", width, height, x, y));
 }
 
+// Form and texture are what the user says they are: both are told.
+void level_by_polynomial(Correction& c, int degree) {
+  const double before = root_mean_square_height(level(c.field)).um();
+  const SurfacePolynomial polynomial = fit_polynomial(c.field, degree);
+  HeightField levelled = subtract_polynomial(std::move(c.field), polynomial);
+  const double left = root_mean_square_height(levelled).um();
+  const double form = std::sqrt(std::max(0.0, before * before - left * left));
+  set(c, std::move(levelled),
+      fmt::format(
+          "levelled by a polynomial of degree {}, which took out {:.3g} um (rms) of form beyond a plane and left "
+          "{:.3g} um",
+          degree, form, left));
+}
+
+void fill(Correction& c) {
+  HeightField filled = fill_missing(c.field);
+  warn(c, fill_warning(c.field, filled));
+  set(c, std::move(filled), "missing samples filled by Laplace's equation");
+}
+
+void take_out_steps(Correction& c) {
+  StepLineResult result = correct_step_lines(c.field);
+  const auto steps = result.steps_um.size() - static_cast<std::size_t>(std::ranges::count(result.steps_um, 0.0));
+  warn(c, result.warning);
+  set(c, std::move(result.field), fmt::format("{} steps between lines taken out", steps));
+}
+
+void filter_by(Correction& c, const std::string& v, bool smooth) {
+  const Length cutoff = Length::from_um(std::stod(v));
+  warn(c, filter_warning(c.field, cutoff));
+  set(c, smooth ? s_filter(c.field, cutoff) : l_filter(c.field, cutoff),
+      fmt::format("{}-filter of {} um", smooth ? 'S' : 'L', v));
+}
+
 // plane, poly:N, base or base:N.
 void level_by(Correction& c, const std::string& v) {
   const std::size_t colon = v.find(':');
   const std::string kind = v.substr(0, colon);
   const int degree = colon == std::string::npos ? 5 : std::stoi(v.substr(colon + 1));
-  if (kind == "plane") return set(c, level(c.field), "levelled by the least-squares plane");
-  if (kind == "poly")
-    return set(c, subtract_polynomial(c.field, fit_polynomial(c.field, degree)),
-               fmt::format("levelled by a polynomial of degree {}", degree));
-  FlattenedBase flat = flatten_base(c.field, degree);
-  if (!flat.settled)
-    c.warnings.push_back("the base did not settle: it may not be what most of the surface is; look at the result");
+  if (kind == "plane") return set(c, level(std::move(c.field)), "levelled by the least-squares plane");
+  if (kind == "poly") return level_by_polynomial(c, degree);
+  FlattenedBase flat = flatten_base(std::move(c.field), degree);
+  warn(c, flat.warning);
   set(c, std::move(flat.field),
       fmt::format("base flattened by a polynomial of degree {}, {:.3g} % of the samples", degree,
                   100.0 * flat.base_share));
@@ -99,30 +135,19 @@ const std::map<std::string, Step>& steps() {
          const Length pitch = Length::from_um(std::stod(v));
          set(c, resampled(c.field, pitch, pitch), fmt::format("resampled to {} um", v));
        }},
-      {"--step-lines",
-       [](Correction& c, const std::string&) {
-         set(c, correct_step_lines(c.field).field, "steps between lines taken out");
-       }},
+      {"--step-lines", [](Correction& c, const std::string&) { take_out_steps(c); }},
       {"--outliers",
        [](Correction& c, const std::string& v) {
-         take_out(c, mask_outliers(c.field, std::stod(v)), "outliers beyond " + v + " standard deviations");
+         take_out(c, mask_outliers(std::move(c.field), std::stod(v)), "outliers beyond " + v + " standard deviations");
        }},
       {"--local-outliers",
        [](Correction& c, const std::string& v) {
-         take_out(c, mask_local_outliers(c.field, std::stod(v)),
+         take_out(c, mask_local_outliers(std::move(c.field), std::stod(v)),
                   "spikes beyond " + v + " robust deviations from the samples around");
        }},
-      {"--fill",
-       [](Correction& c, const std::string&) {
-         set(c, fill_missing(c.field), "missing samples filled by Laplace's equation");
-       }},
-      {"--s-filter",
-       [](Correction& c, const std::string& v) {
-         set(c, s_filter(c.field, Length::from_um(std::stod(v))), "S-filter of " + v + " um");
-       }},
-      {"--l-filter", [](Correction& c, const std::string& v) {
-         set(c, l_filter(c.field, Length::from_um(std::stod(v))), "L-filter of " + v + " um");
-       }}};
+      {"--fill", [](Correction& c, const std::string&) { fill(c); }},
+      {"--s-filter", [](Correction& c, const std::string& v) { filter_by(c, v, true); }},
+      {"--l-filter", [](Correction& c, const std::string& v) { filter_by(c, v, false); }}};
   return all;
 }
 
@@ -207,11 +232,10 @@ Command add_correct(CLI::App& program) {
             surface.provenance["correction"] = words.empty() ? "none" : words;
             write_surface(surface, arguments->output);
             const std::size_t left = surface.field.missing_count();
-            nlohmann::ordered_json json = {{"written", arguments->output},
-                                           {"missing_before", missing},
-                                           {"missing_after", left},
-                                           {"steps", correction.done},
-                                           {"warnings", correction.warnings}};
+            nlohmann::ordered_json json = {{"written", arguments->output},    {"missing_before", missing},
+                                           {"missing_after", left},           {"steps", correction.done},
+                                           {"warnings", correction.warnings}, {"assumption", surface.assumption}};
+            json.update(contents(surface.field));
             std::string text;
             for (const std::string& step : correction.done) text += step + "\n";
             context.print(json, text + fmt::format("wrote {}: {} samples missing before, {} after", arguments->output,

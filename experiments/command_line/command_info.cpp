@@ -21,21 +21,26 @@ using Json = nlohmann::ordered_json;
 
 Json describe(const SurfaceFile& surface) {
   const Grid& grid = surface.field.grid();
-  Json json = {{"format", surface.format},
-               {"title", surface.title},
-               {"columns", grid.columns},
-               {"rows", grid.rows},
-               {"pitch_x", Quantity{grid.pitch_x.um(), "µm", {}}},
-               {"pitch_y", Quantity{grid.pitch_y.um(), "µm", {}}},
-               {"width", Quantity{grid.pitch_x.um() * static_cast<double>(grid.columns), "µm", {}}},
-               {"depth", Quantity{grid.pitch_y.um() * static_cast<double>(grid.rows), "µm", {}}},
-               {"missing", surface.field.missing_count()},
-               {"periodic", surface.field.periodic()},
-               {"datum", Quantity{surface.field.datum().um(), "µm", {}}}};
+  Json json = {
+      {"format", surface.format},
+      {"title", surface.title},
+      {"columns", grid.columns},
+      {"rows", grid.rows},
+      {"pitch_x", Quantity{grid.pitch_x.um(), "µm", {}}},
+      {"pitch_y", Quantity{grid.pitch_y.um(), "µm", {}}},
+      {"width", Quantity{grid.pitch_x.um() * static_cast<double>(grid.columns), "µm", {}}},
+      {"depth", Quantity{grid.pitch_y.um() * static_cast<double>(grid.rows), "µm", {}}},
+      {"samples", grid.size() - surface.field.missing_count()},
+      {"missing", surface.field.missing_count()},
+      {"missing_share",
+       Quantity{static_cast<double>(surface.field.missing_count()) / static_cast<double>(grid.size()), "1", {}}},
+      {"periodic", surface.field.periodic()},
+      {"datum", Quantity{surface.field.datum().um(), "µm", {}}}};
   if (surface.field.missing_count() < grid.size()) {
     const HeightRange range = height_range(surface.field);
     json["lowest"] = Quantity{range.lowest.um(), "µm", {}};
     json["highest"] = Quantity{range.highest.um(), "µm", {}};
+    json["range"] = Quantity{(range.highest - range.lowest).um(), "µm", {}};
   }
   json["assumption"] = surface.assumption;
   json["provenance"] = surface.provenance;
@@ -131,7 +136,11 @@ Json describe_any(const std::filesystem::path& path) {
     return is_bsdf_table(path) ? describe(read_bsdf_table(path)) : describe(read_channels_exr(path));
   }
   if (is_mesh_path(path)) return describe(read_mesh(path));
-  return describe(read_surface(path));
+  const SurfaceFile surface = read_surface(path);
+  Json json = describe(surface);
+  if (const auto quality = sample_quality(path, surface))
+    json["quality"] = {{"lowest", quality->lowest}, {"median", quality->median}, {"highest", quality->highest}};
+  return json;
 }
 
 std::string value_in_words(const Json& value) {

@@ -40,8 +40,17 @@ Command add_convert(CLI::App& program) {
   add_surface_input(*app, "IN", *arguments);
   app->add_option("OUT", arguments->output, written_help("File to write; its ending names the format"))->required();
   return {app, [arguments](const CommandContext& context) {
-            write_surface(arguments->read(), arguments->output);
-            context.print(written(arguments->output), "wrote " + arguments->output);
+            const SurfaceFile surface = arguments->read();
+            write_surface(surface, arguments->output);
+            Json json = written(arguments->output);
+            json.update(contents(surface.field));
+            json["assumption"] = surface.assumption;
+            if (const auto rounding = rounding_of(surface.field, arguments->output))
+              json["height_rounding"] = Quantity{rounding->um(), "µm", {}};
+            const bool lost = surface.field.periodic() && !keeps_period(arguments->output);
+            json["period_lost"] = lost;
+            context.print(json, "wrote " + arguments->output +
+                                    (lost ? "\nthe format cannot say that the surface is periodic" : ""));
             return ExitStatus::Done;
           }};
 }

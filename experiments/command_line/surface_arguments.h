@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include <nlohmann/json.hpp>
+
 #include "measurement/formats/surface_file.h"
 
 namespace CLI {
@@ -19,6 +21,10 @@ struct SurfaceArguments {
 };
 
 /// The file as a positional argument, and --min-quality.
-void add_surface_input(CLI::App& app, const char* name, SurfaceArguments& arguments);
+/// @param besides  what else the command takes for it, for the help text
+void add_surface_input(CLI::App& app, const char* name, SurfaceArguments& arguments, const char* besides = "");
+
+/// {"columns", "rows", "pitch_x", "pitch_y", "missing", "missing_share"}: what was written, for --json.
+[[nodiscard]] nlohmann::ordered_json contents(const HeightField& field);
 
 }  // namespace mezzotint

@@ -24,7 +24,12 @@ json axis(const std::string& field, const std::string& title, bool logarithmic) 
   json out = {{"field", field}, {"type", "quantitative"}, {"title", title}, {"axis", {{"tickCount", 6}}}};
   out["scale"] =
       logarithmic ? json{{"type", "log"}, {"nice", false}, {"padding", 8}} : json{{"zero", false}, {"nice", true}};
-  if (logarithmic) out["axis"]["tickCount"] = 5;
+  if (logarithmic) {
+    out["axis"]["tickCount"] = 5;
+    // Powers of ten that are not read at a glance.
+    out["axis"]["labelExpr"] =
+        "abs(log(datum.value) / LN10) < 3.5 ? format(datum.value, '~g') : replace(format(datum.value, '.0e'), '+', '')";
+  }
   return out;
 }
 

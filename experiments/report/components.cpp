@@ -76,7 +76,7 @@ float block_mean(const HeightField& field, std::size_t column, std::size_t row, 
       ++seen;
     }
   }
-  if (seen == 0) return std::numeric_limits<float>::quiet_NaN();
+  if (2 * seen < block * block) return std::numeric_limits<float>::quiet_NaN();
   return static_cast<float>(sum / static_cast<double>(seen));
 }
 
@@ -158,6 +158,28 @@ json relief_maps(const Panel& panel, const std::vector<NamedRelief>& reliefs) {
 
 json relief_viewer(const Panel& panel, const std::vector<NamedRelief>& reliefs) {
   return relief_component("relief_viewer", panel, reliefs);
+}
+
+json plane_maps(const Panel& panel, const std::vector<PlaneMap>& maps, const PlaneQuantity& quantity) {
+  require(!maps.empty(), "the maps \"" + panel.title + "\" need one at least");
+  json out = component("relief_maps", panel);
+  out["quantity"] = {{"label", quantity.label},
+                     {"symbol", quantity.symbol},
+                     {"unit", quantity.unit},
+                     {"step_unit", quantity.step_unit},
+                     {"centred", true}};
+  if (!quantity.outline.empty()) out["quantity"]["outline"] = quantity.outline;
+  for (const PlaneMap& map : maps) {
+    require(map.columns * map.rows == map.values.size() && !map.values.empty(),
+            "the map \"" + map.name + "\" must have one value a place of its grid");
+    json entry = {{"name", map.name},         {"columns", map.columns},
+                  {"rows", map.rows},         {"block", 1},
+                  {"pitch_x_um", map.step_x}, {"pitch_y_um", map.step_y},
+                  {"missing_share", 0.0},     {"heights", float_array(map.values)}};
+    if (!map.outline.empty()) entry["outline"] = map.outline;
+    out["reliefs"].push_back(std::move(entry));
+  }
+  return out;
 }
 
 json table(const Panel& panel, const std::vector<std::string>& columns, const std::vector<TableRow>& rows) {

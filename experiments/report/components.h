@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -68,7 +69,8 @@ struct NamedRelief {
   const HeightField& field;
 };
 
-/// Longer side of a relief in the page, in samples; longer ones become block means, and the page says so.
+/// Longer side of a relief in the page, in samples; longer ones become block means, and the page says so. A block of
+/// which less than half was measured is missing.
 inline constexpr std::size_t longest_relief_side = 512;
 
 /// Reliefs as pictures on one colour scale in µm; missing samples are hatched.
@@ -78,6 +80,29 @@ inline constexpr std::size_t longest_relief_side = 512;
 /// Reliefs in three dimensions, one at a time.
 /// @throws InvalidInput for no reliefs.
 [[nodiscard]] nlohmann::json relief_viewer(const Panel& panel, const std::vector<NamedRelief>& reliefs);
+
+/// Values over the plane about its middle: an autocorrelation, a spectrum.
+///
+/// Frame    row 0 is the lowest y; the middle of the grid is the origin.
+struct PlaneMap {
+  std::string name;
+  std::size_t columns = 0, rows = 0;
+  double step_x = 1.0, step_y = 1.0;  ///< in the quantity's `step_unit`
+  std::vector<float> values;
+  std::vector<std::array<double, 2>> outline;  ///< a closed line over it; may leave the map
+};
+
+/// What is drawn of a PlaneMap.
+struct PlaneQuantity {
+  std::string label, symbol, unit;
+  std::string step_unit = "um";
+  std::string outline;  ///< what the outline is; empty: there is none
+};
+
+/// Such maps as pictures on one colour scale.
+/// @throws InvalidInput for no maps, or a map whose size is not that of its grid.
+[[nodiscard]] nlohmann::json plane_maps(const Panel& panel, const std::vector<PlaneMap>& maps,
+                                        const PlaneQuantity& quantity);
 
 /// A row of a table: text, numbers, or a Quantity (written with the digits of its standard error).
 struct TableRow {

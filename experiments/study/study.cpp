@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <functional>
 #include <map>
 #include <memory>
@@ -12,6 +11,7 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include "experiments/study/repeated_runs.h"
 #include "experiments/study/study_methods.h"
 #include "forward/ladder/ladder.h"
 
@@ -24,35 +24,6 @@ constexpr std::uint64_t reference_seed = 1000;
 // A run is repeated until it has taken so long, at most so many times.
 constexpr double seconds_of_runs = 0.1;
 constexpr int most_runs = 5;
-
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double mean_of(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
-double error_of_mean(const std::vector<double>& values) {
-  if (values.size() < 2) return 0.0;
-  const double mean = mean_of(values);
-  double sum = 0.0;
-  for (const double value : values) sum += (value - mean) * (value - mean);
-  const auto count = static_cast<double>(values.size());
-  return std::sqrt(sum / (count - 1.0) / count);
-}
-
-// 1.2533 = √(π/2): the standard error of the median of many normal numbers over that of their mean.
-Estimate median_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  const double median = values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-  return {median, 1.2533 * error_of_mean(values)};
-}
 
 /// What runs are compared with.
 struct Reference {
@@ -201,7 +172,7 @@ private:
   }
 
   [[nodiscard]] StudyPoint named(const std::string& method, std::uint64_t samples = 0) const {
-    return {{relief_.family, relief_.gradient, theta_deg_}, method, samples};
+    return {{method, samples}, {relief_.family, relief_.gradient, theta_deg_}};
   }
 
   StudyPoint traced(const PathMethod& method, std::uint64_t samples) {
@@ -288,17 +259,15 @@ std::vector<StudyPoint> run_study(const StudyOptions& options, const Progress& p
 }
 
 void mark_pareto_front(std::vector<StudyPoint>& points) {
-  const auto told = [](const StudyPoint& point) { return std::max(point.error, point.floor); };
   for (StudyPoint& point : points) {
     // `auto` is drawn on the front, it is no part of it.
-    point.on_front = point.method != auto_method;
-    for (const StudyPoint& other : points) {
-      if (other.method == auto_method || !(point.scene == other.scene)) continue;
-      const bool better = told(other) < told(point) && other.seconds <= point.seconds;
-      if (better || (told(other) == told(point) && other.seconds < point.seconds)) point.on_front = false;
-    }
+    point.on_front = point.method != auto_method && std::ranges::none_of(points, [&](const StudyPoint& other) {
+                       return other.method != auto_method && point.scene == other.scene && beats(other, point);
+                     });
   }
 }
+
+std::vector<ChartPoint> chart_points(const std::vector<StudyPoint>& points) { return {points.begin(), points.end()}; }
 
 namespace {
 

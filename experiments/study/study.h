@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "experiments/study/chart_point.h"
 #include "experiments/study/scene.h"
 #include "forward/base/progress.h"
 #include "forward/optics/material.h"
@@ -36,22 +37,14 @@ struct StudyScene {
   bool operator==(const StudyScene&) const = default;
 };
 
-/// One method with one budget on one scene.
-struct StudyPoint {
+/// One method with one budget on one scene. The error is relative_l2 of the reflection to the reference, whose noise is
+/// taken out; trees and pyramids were built before the time that is told.
+struct StudyPoint : ChartPoint {
   StudyScene scene;
-  std::string method;
-  std::uint64_t samples = 0;        ///< 0: none
-  std::optional<double> tolerance;  ///< of `auto`
-  int runs = 1;                     ///< with a seed each; short runs are repeated
-  double seconds = 0.0;             ///< CPU time of one thread, median; trees and pyramids were built before
-  double seconds_error = 0.0;       ///< standard error of it; 0 for a single run
-  double error = 0.0;               ///< relative_l2 of the reflection to the reference, whose noise is taken out
-  double error_spread = 0.0;        ///< standard error of it
-  double bias = 0.0;                ///< the same with the run's own noise taken out too: what no more paths will lower
-  double bias_error = 0.0;          ///< standard error of it
-  double floor = 0.0;               ///< deviation of `error` where there is none: nothing below it can be told
-  std::string chosen;               ///< the rung that `auto` took
-  bool on_front = false;            ///< no other method is both faster and nearer
+  int runs = 1;             ///< with a seed each; short runs are repeated
+  double bias = 0.0;        ///< the error with the run's own noise taken out too: what no more paths will lower
+  double bias_error = 0.0;  ///< standard error of it
+  std::string chosen;       ///< the rung that `auto` took
 };
 
 /// The scenes of a study, in the order in which they are measured.
@@ -62,6 +55,9 @@ struct StudyPoint {
 
 /// Marks the points of each scene that no other point beats in both time and error.
 void mark_pareto_front(std::vector<StudyPoint>& points);
+
+/// What is drawn of them.
+[[nodiscard]] std::vector<ChartPoint> chart_points(const std::vector<StudyPoint>& points);
 
 [[nodiscard]] nlohmann::json to_json(const StudyOptions& options, const std::vector<StudyPoint>& points);
 

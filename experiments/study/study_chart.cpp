@@ -239,7 +239,7 @@ json study_chart(const StudyOptions& options, const std::vector<StudyPoint>& poi
   const json filter = {{"filter",
                         "datum.relief == relief && (relief == 'scan' || datum.rms_gradient == gradient) && "
                         "datum.theta_deg == theta && indexof(datum.questions, compare) >= 0"}};
-  const PanelAxes reach = axes_of(points);
+  const PanelAxes reach = axes_of(chart_points(points));
   const Layers layers{axis("seconds", "CPU time of one thread (s)", reach.fastest, room_for_names * reach.slowest),
                       axis("shown", "relative L2 error", smallest, largest)};
   const json specification = {

@@ -103,6 +103,16 @@ const StudyStyle& style_of(const std::string& method) {
                                                         {"interpolated normals", {"#cc79a7", "triangle"}},
                                                         {"mesh halved", {"#cc79a7", "triangle"}},
                                                         {"mesh quartered", {"#56b4e9", "triangle"}},
+                                                        {"plane", {"#7f7f7f", "square"}},
+                                                        {"relaxation", {"#0072b2", "circle"}},
+                                                        {"Laplace, solved", {"#d55e00", "diamond"}},
+                                                        {"FFT, ends wrapped", {"#7f7f7f", "square"}},
+                                                        {"sums, ends renormalised", {"#0072b2", "circle"}},
+                                                        {"FFT, ends by regression", {"#d55e00", "diamond"}},
+                                                        {"block of rows", {"#cc79a7", "triangle"}},
+                                                        {"random samples", {"#0072b2", "circle"}},
+                                                        {"every n-th sample", {"#d55e00", "diamond"}},
+                                                        {"all samples", {"#000000", "square"}},
                                                         {auto_method, {"#000000", "star"}}};
   return all.at(method);
 }

@@ -39,7 +39,7 @@ public:
     return bottom() - std::log(t) / std::log(axes_.largest / axes_.smallest) * place_.height;
   }
   /// A point that cannot be told from no error stands at the least that can be.
-  [[nodiscard]] double down(const StudyPoint& point) const { return down(std::max(point.error, point.floor)); }
+  [[nodiscard]] double down(const ChartPoint& point) const { return down(point.told()); }
   [[nodiscard]] double bottom() const { return place_.y + place_.height; }
   [[nodiscard]] double right() const { return place_.x + place_.width; }
 
@@ -86,25 +86,25 @@ private:
   PanelAxes axes_;
 };
 
-using Points = std::vector<StudyPoint>;
+using Points = std::vector<ChartPoint>;
 
 Points points_of(const Points& points, const std::string& method) {
   Points list;
   std::copy_if(points.begin(), points.end(), std::back_inserter(list),
-               [&](const StudyPoint& point) { return point.method == method; });
+               [&](const ChartPoint& point) { return point.method == method; });
   std::sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.samples < b.samples; });
   return list;
 }
 
 std::string path_through(const Panel& panel, const Points& points) {
   std::string path;
-  for (const StudyPoint& point : points)
+  for (const ChartPoint& point : points)
     path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', panel.across(point.seconds), panel.down(point));
   return path;
 }
 
 // ± 1 standard error of error and time, where the mark does not hide it.
-std::string error_bars(const Panel& panel, const StudyPoint& point, const char* colour) {
+std::string error_bars(const Panel& panel, const ChartPoint& point, const char* colour) {
   const double x = panel.across(point.seconds), y = panel.down(point);
   const double left = panel.across(std::max(1e-9, point.seconds - point.seconds_error)),
                right = panel.across(point.seconds + point.seconds_error);
@@ -119,7 +119,7 @@ std::string error_bars(const Panel& panel, const StudyPoint& point, const char* 
 std::string series(const Panel& panel, const Points& points, const StudyStyle& style) {
   std::string svg = fmt::format("<path d='{}' fill='none' stroke='{}' stroke-width='1.3'/>",
                                 path_through(panel, points), style.colour);
-  for (const StudyPoint& point : points) {
+  for (const ChartPoint& point : points) {
     svg += error_bars(panel, point, style.colour);
     svg += svg_mark(style, panel.across(point.seconds), panel.down(point), point.error < point.floor);
   }
@@ -127,7 +127,7 @@ std::string series(const Panel& panel, const Points& points, const StudyStyle& s
 }
 
 std::string front(const Panel& panel, Points points) {
-  points.erase(std::remove_if(points.begin(), points.end(), [](const StudyPoint& p) { return !p.on_front; }),
+  points.erase(std::remove_if(points.begin(), points.end(), [](const ChartPoint& p) { return !p.on_front; }),
                points.end());
   std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.seconds < b.seconds; });
   return "<path d='" + path_through(panel, points) + "' class='front'/>";
@@ -135,7 +135,7 @@ std::string front(const Panel& panel, Points points) {
 
 std::string stars(const Panel& panel, const Points& points) {
   std::string svg;
-  for (const StudyPoint& point : points_of(points, auto_method)) {
+  for (const ChartPoint& point : points_of(points, auto_method)) {
     const double x = panel.across(point.seconds), y = panel.down(point);
     const bool at_the_edge = x > panel.right() - 34.0;
     svg += star(style_of(auto_method), x, y);
@@ -211,10 +211,10 @@ std::string svg_mark(const StudyStyle& style, double x, double y, bool hollow) {
   return fmt::format("<path d='M{:.1f} {:.1f}l3.4 5.6h-6.8z' {}/>", x, y - 3.4, paint);
 }
 
-PanelAxes axes_of(const std::vector<StudyPoint>& points) {
+PanelAxes axes_of(const std::vector<ChartPoint>& points) {
   PanelAxes axes;
   double low = INFINITY, high = 0.0;
-  for (const StudyPoint& point : points) {
+  for (const ChartPoint& point : points) {
     low = std::min(low, point.seconds);
     high = std::max(high, point.seconds);
   }
@@ -226,7 +226,7 @@ PanelAxes axes_of(const std::vector<StudyPoint>& points) {
 }
 
 std::string svg_panel(const PanelPlace& place, const PanelAxes& axes, const std::string& title,
-                      const std::vector<StudyPoint>& points, const std::vector<std::string>& methods) {
+                      const std::vector<ChartPoint>& points, const std::vector<std::string>& methods) {
   const Panel panel(place, axes);
   if (points.empty()) return panel.grid() + panel.frame(title);
   std::string svg = panel.floor(points.front().floor) + panel.grid() + front(panel, points);

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/study/study.h"
+#include "experiments/study/chart_point.h"
 #include "experiments/study/study_methods.h"
 
 /// Inside of experiments/study: the pieces of its figures.
@@ -23,7 +23,7 @@ struct PanelAxes {
   double smallest = 1e-4, largest = 10.0;  ///< relative L2
 };
 /// Whole decades of time about all points.
-[[nodiscard]] PanelAxes axes_of(const std::vector<StudyPoint>& points);
+[[nodiscard]] PanelAxes axes_of(const std::vector<ChartPoint>& points);
 
 /// Where a panel stands in the figure, and what is written on its sides; `key`: signs and names in its lower left
 /// corner.
@@ -35,6 +35,6 @@ struct PanelPlace {
 /// One scene: error against time of some methods, the Pareto front, what `auto` chose, and what cannot be told.
 /// @param methods  are drawn, in this order, besides the plain method and `auto`
 [[nodiscard]] std::string svg_panel(const PanelPlace& place, const PanelAxes& axes, const std::string& title,
-                                    const std::vector<StudyPoint>& points, const std::vector<std::string>& methods);
+                                    const std::vector<ChartPoint>& points, const std::vector<std::string>& methods);
 
 }  // namespace mezzotint

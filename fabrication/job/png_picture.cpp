@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 
+#include "forward/base/bounded_memory.h"
+
 namespace mezzotint {
 
 namespace {
@@ -79,7 +81,7 @@ std::vector<std::uint8_t> decode_gray_png(std::span<const std::byte> png, std::s
                                           const MemberPlace& place) {
   check_header(read_header(png, place), columns, rows, place);
   check_chunks(png, place);
-  OIIO::Filesystem::IOMemReader source(png.data(), png.size());
+  BoundedMemory source(png.data(), png.size());
   OIIO::Filesystem::IOProxy* const proxy = &source;
   OIIO::ImageSpec config;
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);

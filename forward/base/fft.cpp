@@ -1,37 +1,14 @@
 #include "forward/base/fft.h"
 
-#include <fftw3.h>
-
-#include <algorithm>
 #include <mutex>
-#include <new>
 #include <string>
 
 #include "forward/base/error.h"
+#include "forward/base/fftw_support.h"
 
 namespace mezzotint {
 
 namespace {
-
-constexpr std::size_t longest_side = std::size_t{1} << 16;
-
-// FFTW's planner keeps global tables and is not thread-safe; executing a plan is.
-std::mutex& planner_mutex() {
-  static std::mutex mutex;
-  return mutex;
-}
-
-struct FreeFftw {
-  void operator()(void* memory) const { fftw_free(memory); }
-};
-
-template <class T>
-std::unique_ptr<T[], FreeFftw> allocate_aligned(std::size_t count) {
-  auto* memory = static_cast<T*>(fftw_malloc(count * sizeof(T)));
-  if (memory == nullptr) throw std::bad_alloc();
-  std::fill_n(memory, count, T{});
-  return std::unique_ptr<T[], FreeFftw>(memory);
-}
 
 void require_valid_sides(std::size_t columns, std::size_t rows) {
   require(columns >= 1 && rows >= 1 && columns <= longest_side && rows <= longest_side,
@@ -58,7 +35,7 @@ struct RealFft2d::Workspace {
     auto* complex = reinterpret_cast<fftw_complex*>(spectrum.get());
     const int n0 = static_cast<int>(rows);
     const int n1 = static_cast<int>(columns);
-    const std::lock_guard lock(planner_mutex());
+    const std::lock_guard lock(fftw_planner_mutex());
     // FFTW_MEASURE times algorithms and may pick another one, with other roundings, in every run;
     // FFTW_ESTIMATE decides by rule. Our own buffers are aligned, so the rule always sees the same case.
     // (What MEASURE learns would also steer later estimates: nobody in this program may plan with it.)
@@ -67,7 +44,7 @@ struct RealFft2d::Workspace {
   }
 
   ~Workspace() {
-    const std::lock_guard lock(planner_mutex());
+    const std::lock_guard lock(fftw_planner_mutex());
     fftw_destroy_plan(forward);
     fftw_destroy_plan(inverse);
   }

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <memory>
 #include <string>
 
 #include "forward/base/error.h"
@@ -55,16 +56,22 @@ void write_aside(const fs::path& destination, const std::function<void(const fs:
   }
 }
 
-void write_file(const fs::path& destination, std::string_view bytes) {
+void write_pieces(const fs::path& destination, const std::function<void(const PutBytes&)>& write) {
   write_aside(destination, [&](const fs::path& temporary) {
-    std::FILE* file = std::fopen(temporary.c_str(), "wb");
-    if (file == nullptr) fail(destination, std::strerror(errno));
-    const std::size_t written = std::fwrite(bytes.data(), 1, bytes.size(), file);
-    const int write_error = errno;
-    const bool closed = std::fclose(file) == 0;
-    if (written != bytes.size()) fail(destination, std::strerror(write_error));
-    if (!closed) fail(destination, std::strerror(errno));
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(temporary.c_str(), "wb"), std::fclose);
+    if (!file) fail(destination, std::strerror(errno));
+    constexpr std::size_t buffer_bytes = std::size_t{1} << 18;  // of one row each would be a call to the system
+    std::setvbuf(file.get(), nullptr, _IOFBF, buffer_bytes);
+    write([&](std::string_view bytes) {
+      if (std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size())
+        fail(destination, std::strerror(errno));
+    });
+    if (std::fflush(file.get()) != 0) fail(destination, std::strerror(errno));
   });
+}
+
+void write_file(const fs::path& destination, std::string_view bytes) {
+  write_pieces(destination, [bytes](const PutBytes& put) { put(bytes); });
 }
 
 }  // namespace mezzotint

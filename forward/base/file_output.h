@@ -15,6 +15,10 @@ namespace mezzotint {
 void write_aside(const std::filesystem::path& destination,
                  const std::function<void(const std::filesystem::path&)>& write);
 
+/// A file piece by piece, by `write_aside`: `write` calls what it is given with the next bytes.
+using PutBytes = std::function<void(std::string_view)>;
+void write_pieces(const std::filesystem::path& destination, const std::function<void(const PutBytes&)>& write);
+
 /// Bytes (or text) to a file, by `write_aside`.
 void write_file(const std::filesystem::path& destination, std::string_view bytes);
 

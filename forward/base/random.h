@@ -19,7 +19,12 @@ enum class RandomPurpose : std::uint32_t {
   Test = 9,
   PatternPart = 10,
   Pilot = 11,
-  SamplePlace = 16
+  InstrumentOutlier = 12,
+  InstrumentHole = 13,
+  StudySample = 14,
+  StudyTexture = 15,
+  SamplePlace = 16,
+  TextureDraw = 17
 };
 
 /// Random numbers by counter: a pure function of (seed, purpose, index, draw). No state is shared,

@@ -20,7 +20,7 @@ ExrInput open_exr(const std::filesystem::path& path) {
   ExrInput input;
   input.bytes = read_file(path);
   require_sound_exr_header(input.bytes, path);
-  input.memory = std::make_unique<OIIO::Filesystem::IOMemReader>(input.bytes.data(), input.bytes.size());
+  input.memory = std::make_unique<BoundedMemory>(input.bytes.data(), input.bytes.size());
   input.file = OIIO::ImageInput::create("exr", false, nullptr, input.memory.get());
   if (!input.file) throw DeviceError("cannot read " + path.string() + ": OpenImageIO has no OpenEXR here");
   if (!input.file->open(path.string(), input.spec)) throw FileError(path, "header", input.file->geterror());

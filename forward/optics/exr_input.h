@@ -5,8 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+
+#include "forward/base/bounded_memory.h"
 
 /// Inside of forward/optics and forward/bsdf_table.
 
@@ -16,7 +17,7 @@ namespace mezzotint {
 /// depend on each other.
 struct ExrInput {
   std::vector<std::byte> bytes;
-  std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;
+  std::unique_ptr<BoundedMemory> memory;
   std::unique_ptr<OIIO::ImageInput> file;
   OIIO::ImageSpec spec;
 };

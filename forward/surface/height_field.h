@@ -49,6 +49,11 @@ public:
 
   /// Height of z = 0 in the frame of the instrument.
   [[nodiscard]] Length datum() const { return datum_; }
+  /// Says anew what lies beyond the ends and where z = 0 stands; for who has changed the heights in place.
+  void set_frame(Continuation continuation, Length datum) {
+    continuation_ = continuation;
+    datum_ = datum;
+  }
 
   [[nodiscard]] float at(std::size_t column, std::size_t row) const {
     return heights_um_[row * grid_.columns + column];
@@ -78,6 +83,10 @@ struct HeightRange {
   Length highest;
 };
 [[nodiscard]] HeightRange height_range(const HeightField& field);
+
+/// Root-mean-square height about the mean: Sq of ISO 25178-2. Missing samples are left out.
+/// @throws InvalidInput when no sample is left.
+[[nodiscard]] Length root_mean_square_height(const HeightField& field);
 
 /// The part of a field from sample (column, row) on; no longer periodic, unless it is the whole.
 /// @throws InvalidInput when the part reaches outside of the field.

@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <Eigen/SparseCholesky>
 
 #include "forward/base/error.h"
@@ -20,63 +25,63 @@ namespace {
 constexpr std::size_t small_hole = 48;
 // Where a sparse Cholesky factor and multigrid take equally long.
 constexpr std::size_t most_factored = 20000;
-constexpr std::int32_t not_missing = -1, unseen = -2;
 
 /// The connected holes of a field, one after another.
 class Holes {
 public:
-  explicit Holes(const HeightField& field) : stencil_(field), number_(field.grid().size(), not_missing) {
-    for (std::size_t i = 0; i < number_.size(); ++i)
-      if (std::isnan(field.heights_um()[i])) number_[i] = unseen;
+  explicit Holes(const HeightField& field) : stencil_(field), unseen_((field.grid().size() + 63) / 64, 0) {
+    const auto heights_um = field.heights_um();
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, unseen_.size(), 4096), [&](const auto& words) {
+      for (std::size_t word = words.begin(); word < words.end(); ++word) {
+        const auto part = heights_um.subspan(64 * word, std::min<std::size_t>(64, heights_um.size() - 64 * word));
+        std::uint64_t bits = 0;
+        for (std::size_t k = 0; k < part.size(); ++k) bits |= std::uint64_t{std::isnan(part[k])} << k;
+        unseen_[word] = bits;
+      }
+    });
   }
 
-  /// The samples of the next hole, in ascending order; empty after the last.
-  std::vector<std::size_t> next() {
-    while (cursor_ < number_.size() && number_[cursor_] != unseen) ++cursor_;
-    std::vector<std::size_t> hole;
-    if (cursor_ == number_.size()) return hole;
-    hole.push_back(cursor_);
-    number_[cursor_] = 0;
-    for (std::size_t k = 0; k < hole.size(); ++k) {
-      stencil_.for_each_neighbour(hole[k], [&](std::size_t index, double) {
-        if (number_[index] != unseen) return;
-        number_[index] = 0;
-        hole.push_back(index);
+  /// Appends the samples of the next hole, in ascending order; none after the last.
+  void next(std::vector<std::size_t>& samples) {
+    while (cursor_ < unseen_.size() && unseen_[cursor_] == 0) ++cursor_;
+    if (cursor_ == unseen_.size()) return;
+    const std::size_t begin = samples.size();
+    take(64 * cursor_ + static_cast<std::size_t>(std::countr_zero(unseen_[cursor_])), samples);
+    for (std::size_t k = begin; k < samples.size(); ++k)
+      stencil_.for_each_neighbour(samples[k], [&](std::size_t index, double) {
+        if ((unseen_[index / 64] >> index % 64 & 1U) != 0) take(index, samples);
       });
-    }
-    std::ranges::sort(hole);
-    return hole;
-  }
-
-  /// Numbers the samples of a hole, or of several: what `laplace_system` wants.
-  const std::vector<std::int32_t>& numbered(const std::vector<std::size_t>& samples) {
-    for (std::size_t k = 0; k < samples.size(); ++k) number_[samples[k]] = static_cast<std::int32_t>(k);
-    return number_;
+    std::sort(samples.begin() + static_cast<std::ptrdiff_t>(begin), samples.end());
   }
 
 private:
+  void take(std::size_t index, std::vector<std::size_t>& samples) {
+    unseen_[index / 64] &= ~(std::uint64_t{1} << index % 64);
+    samples.push_back(index);
+  }
+
   LaplaceStencil stencil_;
-  std::vector<std::int32_t> number_;
+  std::vector<std::uint64_t> unseen_;  // a bit a sample
   std::size_t cursor_ = 0;
 };
 
 /// Laplace's equation in a small hole by a dense Cholesky factor on the stack.
 class SmallHole {
 public:
-  SmallHole(const HeightField& field, const std::vector<std::size_t>& samples, const std::vector<std::int32_t>& number)
-      : count_(samples.size()) {
+  SmallHole(const HeightField& field, std::span<const std::size_t> samples) : count_(samples.size()) {
     const LaplaceStencil stencil(field);
     for (std::size_t k = 0; k < count_; ++k) {
       right_[k] = 0.0;
       std::fill_n(row(k), k + 1, 0.0);
       stencil.for_each_neighbour(samples[k], [&](std::size_t index, double weight) {
-        const std::int32_t other = number[index];
-        if (other == static_cast<std::int32_t>(k)) return;
+        if (index == samples[k]) return;  // a period of one sample: its own neighbour
         row(k)[k] += weight;
-        if (other < 0)
-          right_[k] += weight * static_cast<double>(field.heights_um()[index]);
-        else if (static_cast<std::size_t>(other) < k)
-          row(k)[other] -= weight;
+        const double z = static_cast<double>(field.heights_um()[index]);
+        if (!std::isnan(z)) {
+          right_[k] += weight * z;
+        } else if (index < samples[k]) {
+          row(k)[std::ranges::lower_bound(samples, index) - samples.begin()] -= weight;
+        }
       });
     }
   }
@@ -116,32 +121,86 @@ Eigen::VectorXd solve(const LaplaceSystem& system, const std::vector<std::size_t
 }
 
 template <class Values>
-void write(HeightField& field, const std::vector<std::size_t>& samples, const Values& heights_um) {
+void write(HeightField& field, std::span<const std::size_t> samples, const Values& heights_um) {
   for (std::size_t k = 0; k < samples.size(); ++k)
     field.heights_um()[samples[k]] = static_cast<float>(heights_um[static_cast<std::ptrdiff_t>(k)]);
 }
 
+/// Small holes, one behind another; each is filled by itself.
+struct SmallHoles {
+  std::vector<std::size_t> samples, begins;
+
+  void fill(HeightField& field) const {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, begins.size(), 256), [&](const auto& holes) {
+      for (std::size_t k = holes.begin(); k < holes.end(); ++k) {
+        const std::size_t end = k + 1 < begins.size() ? begins[k + 1] : samples.size();
+        const auto hole = std::span(samples).subspan(begins[k], end - begins[k]);
+        // What a hole borders on was measured: none sees what another writes.
+        write(field, hole, SmallHole(field, hole).solve());
+      }
+    });
+  }
+};
+
+double rms_slope(const HeightField& field) {
+  const double per_x = 1.0 / field.grid().pitch_x.um(), per_y = 1.0 / field.grid().pitch_y.um();
+  double squares = 0.0, count = 0.0;
+  const auto add = [&](double rise, double per_um) {
+    if (std::isnan(rise)) return;
+    squares += rise * rise * per_um * per_um;
+    count += 1.0;
+  };
+  for (std::size_t row = 0; row < field.rows(); ++row)
+    for (std::size_t column = 0; column < field.columns(); ++column) {
+      const double z = double{field.at(column, row)};
+      if (column + 1 < field.columns()) add(double{field.at(column + 1, row)} - z, per_x);
+      if (row + 1 < field.rows()) add(double{field.at(column, row + 1)} - z, per_y);
+    }
+  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+}
+
 }  // namespace
 
-HeightField fill_missing(const HeightField& field) {
+std::string fill_warning(const HeightField& before, const HeightField& filled) {
+  constexpr double noticeable = 0.01;
+  const double measured = rms_slope(before), whole = rms_slope(filled);
+  if (whole > (1.0 - noticeable) * measured) return "";
+  return fmt::format(
+      "what was filled ({:.3g} % of the samples) is smoother than the surface: slopes of the whole are {:.2g} % "
+      "smaller "
+      "than those that were measured, heights {:.2g} %. Holes are wider than the features; leave them missing for "
+      "roughness",
+      100.0 * static_cast<double>(before.missing_count()) / static_cast<double>(before.grid().size()),
+      100.0 * (1.0 - whole / measured),
+      100.0 * (1.0 - root_mean_square_height(filled) / root_mean_square_height(before)));
+}
+
+HeightField fill_missing(HeightField field) {
   const std::size_t missing = field.missing_count();
   require(missing < field.grid().size(), "no sample was measured: there is nothing to fill the field from");
-  HeightField filled = field;
-  if (missing == 0) return filled;
-  Holes holes(field);
+  if (missing == 0) return field;
+  SmallHoles small;
   std::vector<std::size_t> large;
-  for (std::vector<std::size_t> hole = holes.next(); !hole.empty(); hole = holes.next()) {
-    if (hole.size() <= small_hole) {
-      write(filled, hole, SmallHole(field, hole, holes.numbered(hole)).solve());
-    } else {
-      large.insert(large.end(), hole.begin(), hole.end());
+  {
+    Holes holes(field);
+    for (std::size_t begin = 0;; begin = small.samples.size()) {
+      holes.next(small.samples);
+      const std::size_t found = small.samples.size() - begin;
+      if (found == 0) break;
+      if (found <= small_hole) {
+        small.begins.push_back(begin);
+        continue;
+      }
+      large.insert(large.end(), small.samples.begin() + static_cast<std::ptrdiff_t>(begin), small.samples.end());
+      small.samples.resize(begin);
     }
   }
-  if (large.empty()) return filled;
-  std::ranges::sort(large);
-  const LaplaceSystem system = laplace_system(field, large, holes.numbered(large));
-  write(filled, large, solve(system, large, field.columns()));
-  return filled;
+  if (!large.empty()) {
+    std::ranges::sort(large);
+    write(field, large, solve(laplace_system(field, large), large, field.columns()));
+  }
+  small.fill(field);
+  return field;
 }
 
 }  // namespace mezzotint

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "forward/surface/height_field.h"
 
 namespace mezzotint {
@@ -22,5 +24,10 @@ namespace mezzotint {
 /// The mean goes to nowhere: the datum stays as it was.
 /// @throws  as s_filter
 [[nodiscard]] HeightField l_filter(const HeightField& field, Length cutoff);
+
+/// Where a cut-off does not fit to the field, in words; else empty: so near the spacing that the samples hold no such
+/// filter (at the cut-off itself more than 0.55 of the amplitude passes), or longer than the field, of which the
+/// S-filter then leaves hardly more than a plane.
+[[nodiscard]] std::string filter_warning(const HeightField& field, Length cutoff);
 
 }  // namespace mezzotint

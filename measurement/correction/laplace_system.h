@@ -58,8 +58,6 @@ struct LaplaceSystem {
 };
 
 /// @param unknowns  samples to find, in ascending order; all others that they touch are measured
-/// @param number    of each sample of the field; room for the numbers of the unknowns (−1 elsewhere)
-[[nodiscard]] LaplaceSystem laplace_system(const HeightField& field, const std::vector<std::size_t>& unknowns,
-                                           const std::vector<std::int32_t>& number);
+[[nodiscard]] LaplaceSystem laplace_system(const HeightField& field, const std::vector<std::size_t>& unknowns);
 
 }  // namespace mezzotint

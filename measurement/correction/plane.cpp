@@ -1,66 +1,81 @@
+#include "measurement/correction/plane.h"
+
 #include <cmath>
+#include <utility>
 
 #include "forward/base/error.h"
-#include "measurement/correction/plane.h"
+#include "forward/surface/row_bands.h"
+#include "measurement/correction/plane_rows.h"
 
 namespace mezzotint {
 
 namespace {
 
-// x and y from the middle of the field, in µm.
-double centred_um(std::size_t index, std::size_t count, Length pitch) {
-  return (static_cast<double>(index) - 0.5 * static_cast<double>(count - 1)) * pitch.um();
-}
+// Sums over the measured samples of places (from an origin, µm) and heights (above a reference).
+struct Sums {
+  double count = 0.0, x = 0.0, y = 0.0, z = 0.0, xx = 0.0, yy = 0.0, xy = 0.0, xz = 0.0, yz = 0.0;
 
-struct Means {
-  double count = 0.0, x = 0.0, y = 0.0, z = 0.0;
-};
-
-template <class Visit>
-void for_each_measured(const HeightField& field, const Visit& visit) {
-  for (std::size_t row = 0; row < field.rows(); ++row) {
-    const double y = centred_um(row, field.rows(), field.grid().pitch_y);
-    for (std::size_t column = 0; column < field.columns(); ++column) {
-      const float z = field.at(column, row);
-      if (!std::isnan(z)) visit(centred_um(column, field.columns(), field.grid().pitch_x), y, static_cast<double>(z));
-    }
+  void add(const RowMoments& row, double at_y) {
+    count += row.count;
+    x += row.x;
+    y += row.count * at_y;
+    z += row.z;
+    xx += row.xx;
+    yy += row.count * at_y * at_y;
+    xy += row.x * at_y;
+    xz += row.xz;
+    yz += row.z * at_y;
   }
-}
-
-Means means_of(const HeightField& field) {
-  Means sums;
-  for_each_measured(field, [&](double x, double y, double z) {
-    sums.count += 1.0;
-    sums.x += x;
-    sums.y += y;
-    sums.z += z;
-  });
-  require(sums.count >= 3.0, "a plane needs three measured samples at least");
-  return {sums.count, sums.x / sums.count, sums.y / sums.count, sums.z / sums.count};
-}
-
-struct SecondMoments {
-  double xx = 0.0, yy = 0.0, xy = 0.0, xz = 0.0, yz = 0.0;
+  Sums& operator+=(const Sums& o) {
+    count += o.count;
+    x += o.x;
+    y += o.y;
+    z += o.z;
+    xx += o.xx;
+    yy += o.yy;
+    xy += o.xy;
+    xz += o.xz;
+    yz += o.yz;
+    return *this;
+  }
+  /// About their own means.
+  [[nodiscard]] Sums central() const {
+    Sums c;
+    c.xx = xx - x * x / count;
+    c.yy = yy - y * y / count;
+    c.xy = xy - x * y / count;
+    c.xz = xz - x * z / count;
+    c.yz = yz - y * z / count;
+    return c;
+  }
 };
 
-SecondMoments moments_about(const Means& mean, const HeightField& field) {
-  SecondMoments sums;
-  for_each_measured(field, [&](double x, double y, double z) {
-    const double dx = x - mean.x, dy = y - mean.y, dz = z - mean.z;
-    sums.xx += dx * dx;
-    sums.yy += dy * dy;
-    sums.xy += dx * dy;
-    sums.xz += dx * dz;
-    sums.yz += dy * dz;
+struct Origin {
+  double x = 0.0, y = 0.0, z = 0.0;  // x, y from the middle of the field
+};
+
+Sums sums_about(const HeightField& field, const Origin& origin) {
+  const double pitch_x = field.grid().pitch_x.um();
+  return sum_of_bands(field.rows(), Sums{}, [&](std::size_t first, std::size_t end) {
+    Sums sums;
+    for (std::size_t row = first; row < end; ++row) {
+      const RowPlaces places{centred_um(0, field.columns(), field.grid().pitch_x) - origin.x, pitch_x};
+      sums.add(row_moments(row_of(field, row), places, origin.z),
+               centred_um(row, field.rows(), field.grid().pitch_y) - origin.y);
+    }
+    return sums;
   });
-  return sums;
 }
 
 }  // namespace
 
 Plane fit_plane(const HeightField& field) {
-  const Means mean = means_of(field);
-  const SecondMoments m = moments_about(mean, field);
+  const Sums about_middle = sums_about(field, {});
+  const double n = about_middle.count;
+  require(n >= 3.0, "a plane needs three measured samples at least");
+  // Again about the means: samples far from the middle, or heights far from 0, would lose their digits otherwise.
+  const Origin mean{about_middle.x / n, about_middle.y / n, about_middle.z / n};
+  const Sums m = sums_about(field, mean).central();
   const double determinant = m.xx * m.yy - m.xy * m.xy;
   // Samples on one line leave rounding only; the narrowest diagonal strip of a 2^15-wide field leaves 1e-9.
   constexpr double rounding = 1e-12;
@@ -71,21 +86,18 @@ Plane fit_plane(const HeightField& field) {
   return {Length::from_um(mean.z - slope_x * mean.x - slope_y * mean.y), slope_x, slope_y};
 }
 
-HeightField subtract_plane(const HeightField& field, const Plane& plane) {
-  std::vector<float> levelled_um(field.grid().size());
-  for (std::size_t row = 0; row < field.rows(); ++row) {
-    const double y = centred_um(row, field.rows(), field.grid().pitch_y);
-    for (std::size_t column = 0; column < field.columns(); ++column) {
-      const double x = centred_um(column, field.columns(), field.grid().pitch_x);
-      const double z = plane.offset.um() + plane.slope_x * x + plane.slope_y * y;
-      levelled_um[row * field.columns() + column] = static_cast<float>(field.at(column, row) - z);
-    }
-  }
+HeightField subtract_plane(HeightField field, const Plane& plane) {
+  for_each_band(field.rows(), [&](std::size_t, std::size_t first, std::size_t end) {
+    for (std::size_t row = first; row < end; ++row) subtract_line(row_of(field, row), line_of(plane, field, row));
+  });
   const bool is_level = plane.slope_x == 0.0 && plane.slope_y == 0.0;
-  return HeightField(field.grid(), is_level ? field.continuation() : Continuation::Mirrored, std::move(levelled_um),
-                     field.datum() + plane.offset);
+  field.set_frame(is_level ? field.continuation() : Continuation::Mirrored, field.datum() + plane.offset);
+  return field;
 }
 
-HeightField level(const HeightField& field) { return subtract_plane(field, fit_plane(field)); }
+HeightField level(HeightField field) {
+  const Plane plane = fit_plane(field);
+  return subtract_plane(std::move(field), plane);
+}
 
 }  // namespace mezzotint

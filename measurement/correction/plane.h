@@ -16,8 +16,9 @@ struct Plane {
 [[nodiscard]] Plane fit_plane(const HeightField& field);
 /// The field with a plane subtracted (in double); the plane's offset goes to the datum. A periodic field stays
 /// periodic only under a level plane: a tilt has no period.
-[[nodiscard]] HeightField subtract_plane(const HeightField& field, const Plane& plane);
-/// Levelled by the least-squares plane.
-[[nodiscard]] HeightField level(const HeightField& field);
+[[nodiscard]] HeightField subtract_plane(HeightField field, const Plane& plane);
+/// Levelled by the least-squares plane. A field that is moved in is levelled where it stands, without a copy, as by
+/// every correction that takes its field by value.
+[[nodiscard]] HeightField level(HeightField field);
 
 }  // namespace mezzotint

@@ -27,6 +27,6 @@ inline constexpr int highest_degree = 12;
 
 /// The field with a polynomial subtracted (in double). Only a constant leaves a periodic field periodic. The constant
 /// goes to the datum.
-[[nodiscard]] HeightField subtract_polynomial(const HeightField& field, const SurfacePolynomial& polynomial);
+[[nodiscard]] HeightField subtract_polynomial(HeightField field, const SurfacePolynomial& polynomial);
 
 }  // namespace mezzotint

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "forward/base/error.h"
 
 namespace mezzotint {
@@ -50,6 +52,25 @@ double robust_deviation(const std::vector<double>& values) {
   return sizes.empty() ? 0.0 : robust * median(sizes);
 }
 
+std::string warning_of(const StepLineResult& result) {
+  constexpr double much = 0.3;
+  double offset = 0.0, sum = 0.0, squares = 0.0, steps = 0.0;
+  for (const double step : result.steps_um) {
+    offset += step;
+    sum += offset;
+    squares += offset * offset;
+    steps += step != 0.0 ? 1.0 : 0.0;
+  }
+  const auto count = static_cast<double>(result.steps_um.size());
+  const double moved = std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count)));
+  const double left = root_mean_square_height(result.field).um();
+  if (!(moved > much * left)) return "";
+  return fmt::format(
+      "{:.0f} steps between rows were taken out, {:.3g} um (rms) of height, where {:.3g} um are left: steps of the "
+      "surface itself that run along the rows look the same. Measure it turned by 90 degrees to tell them apart",
+      steps, moved, left);
+}
+
 }  // namespace
 
 StepLineResult correct_step_lines(const HeightField& field) {
@@ -67,6 +88,7 @@ StepLineResult correct_step_lines(const HeightField& field) {
     for (std::size_t column = 0; column < field.columns(); ++column)
       result.field.at(column, row) = static_cast<float>(static_cast<double>(field.at(column, row)) - offset);
   }
+  result.warning = warning_of(result);
   return result;
 }
 

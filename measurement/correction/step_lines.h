@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "forward/surface/height_field.h"
@@ -10,6 +11,9 @@ namespace mezzotint {
 struct StepLineResult {
   HeightField field;
   std::vector<double> steps_um;  ///< that were taken out between row k and row k + 1
+  /// Where what was taken out is much of the relief itself: how much, in words. Steps of the surface that run along the
+  /// rows look like those of the instrument. Empty otherwise.
+  std::string warning;
 };
 
 /// Takes out steps between the rows of an instrument that scans line by line: each row is moved so that the median of

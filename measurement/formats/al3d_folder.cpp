@@ -55,19 +55,27 @@ void add_al3d_information(const fs::path& folder, SurfaceFile& surface) {
   }
 }
 
-void mask_low_quality(const fs::path& folder, int min_quality, SurfaceFile& surface) {
-  const fs::path path = folder / "qualitymap.bmp";
+bool has_quality_map(const fs::path& folder) {
   std::error_code ignored;
-  if (!fs::is_regular_file(path, ignored)) {
+  return fs::is_regular_file(folder / "qualitymap.bmp", ignored);
+}
+
+QualityMap read_quality_map(const fs::path& folder, const HeightField& field) {
+  const fs::path path = folder / "qualitymap.bmp";
+  if (!has_quality_map(folder))
     throw FileError(path, "", "no such file; a threshold of quality needs the map beside the heights");
-  }
-  const QualityMap map = parse_quality_map(path, read_file(path));
-  HeightField& field = surface.field;
+  QualityMap map = parse_quality_map(path, read_file(path));
   if (map.columns != field.columns() || map.rows != field.rows()) {
     throw FileError(path, "",
                     fmt::format("has {} × {} pixels; the {} × {} of the heights are needed", map.columns, map.rows,
                                 field.columns(), field.rows()));
   }
+  return map;
+}
+
+void mask_low_quality(const fs::path& folder, int min_quality, SurfaceFile& surface) {
+  HeightField& field = surface.field;
+  const QualityMap map = read_quality_map(folder, field);
   for (std::size_t row = 0; row < map.rows; ++row) {
     for (std::size_t column = 0; column < map.columns; ++column) {
       if (map.gray[(map.rows - 1 - row) * map.columns + column] >= min_quality) continue;

@@ -1,4 +1,6 @@
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -53,11 +55,13 @@ void write_al3d(const HeightField& field, const std::filesystem::path& path) {
   const std::size_t stride = (4 * grid.columns + 7) / 8 * 8;
   std::string bytes = header_of(field);
   bytes.reserve(bytes.size() + stride * grid.rows);
+  std::vector<float> line(grid.columns);
   for (std::size_t row = grid.rows; row-- > 0;) {
     for (std::size_t column = 0; column < grid.columns; ++column) {
       const float z = field.at(column, row);
-      append_little_endian(bytes, std::isnan(z) ? al3d::marker : static_cast<float>(z * 1e-6));
+      line[column] = std::isnan(z) ? al3d::marker : static_cast<float>(z * 1e-6);
     }
+    append_little_endian(bytes, std::span<const float>(line));
     bytes.append(stride - 4 * grid.columns, '\0');
   }
   write_file(path, bytes);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -14,6 +15,11 @@ namespace mezzotint {
 /// A number from its little-endian bytes, whatever the order of this machine. `bytes` holds sizeof(Number).
 template <class Number>
 [[nodiscard]] Number little_endian(const std::byte* bytes) {
+  if constexpr (std::endian::native == std::endian::little) {
+    Number number;
+    std::memcpy(&number, bytes, sizeof number);
+    return number;
+  }
   using Bits =
       std::conditional_t<sizeof(Number) == 8, std::uint64_t,
                          std::conditional_t<sizeof(Number) == 4, std::uint32_t,

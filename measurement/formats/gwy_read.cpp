@@ -159,13 +159,16 @@ SurfaceFile parse_gwy_channel(const std::filesystem::path& path, std::span<const
                     heights.height * lateral / static_cast<double>(heights.rows)});
   if (channel.mask) require_matching_mask(path, heights, *channel.mask);
   const Continuation continuation = take_continuation(channel, assumption);
-  const auto height_m = [&](std::size_t i) {
+  const auto height_m = [&heights, vertical](std::size_t i) {
     const double z = heights.value(i) * vertical;
-    const bool masked = channel.mask && channel.mask->value(i) >= 0.5;
-    return masked || !std::isfinite(z) ? std::numeric_limits<double>::quiet_NaN() : z;
+    return std::isfinite(z) ? z : std::numeric_limits<double>::quiet_NaN();
+  };
+  const auto unmasked_m = [&](std::size_t i) {
+    return channel.mask->value(i) >= 0.5 ? std::numeric_limits<double>::quiet_NaN() : height_m(i);
   };
   // Gwyddion shows the first row on top.
-  HeightField field = assemble_heights(path, place, grid, FirstRow::Top, continuation, height_m);
+  HeightField field = channel.mask ? assemble_heights(path, place, grid, FirstRow::Top, continuation, unmasked_m)
+                                   : assemble_heights(path, place, grid, FirstRow::Top, continuation, height_m);
   return {std::move(field), "gwy", channel.title, std::move(channel.meta), assumption};
 }
 

@@ -1,11 +1,14 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "forward/base/error.h"
 #include "forward/base/file_output.h"
 #include "measurement/formats/gwy_field.h"
+#include "measurement/formats/little_endian_writer.h"
 #include "measurement/formats/surface_file.h"
 #include "measurement/formats/text_values.h"
 
@@ -13,24 +16,47 @@ namespace mezzotint {
 
 namespace {
 
-/// Serialises objects; sizes are patched in when an object ends.
+/// Serialises objects. Each begins with its size, so all is gone through twice: first the sizes are found, then the
+/// bytes go to the file.
 class GwyWriter {
 public:
-  explicit GwyWriter(std::size_t expected_bytes) { bytes_.reserve(expected_bytes); }
+  /// Finds sizes.
+  GwyWriter() = default;
+  /// Writes, with the sizes that another one found.
+  GwyWriter(const PutBytes& put, std::vector<std::size_t> sizes) : put_(&put), sizes_(std::move(sizes)) {}
 
-  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+  [[nodiscard]] bool only_counts() const { return put_ == nullptr; }
+  [[nodiscard]] const std::vector<std::size_t>& sizes() const { return sizes_; }
+  [[nodiscard]] std::size_t count() const { return count_; }
 
-  void text(std::string_view value) { bytes_.append(value).push_back('\0'); }
+  void bytes(std::string_view bytes) {
+    count_ += bytes.size();
+    if (put_ != nullptr) (*put_)(bytes);
+  }
+  void skip(std::size_t count) { count_ += count; }
+  void text(std::string_view value) {
+    bytes(value);
+    bytes(std::string_view("", 1));
+  }
   template <class Unsigned>
   void number(Unsigned value) {
-    for (std::size_t i = 0; i < sizeof value; ++i) bytes_.push_back(static_cast<char>(value >> (8 * i) & 0xFF));
+    std::string digits;
+    append_little_endian(digits, value);
+    bytes(digits);
   }
-  void real(double value) { number(std::bit_cast<std::uint64_t>(value)); }
+  void real(double value) { number(value); }
+  void reals(std::span<const double> values) {
+    if constexpr (std::endian::native == std::endian::little)
+      return bytes({reinterpret_cast<const char*>(values.data()), values.size_bytes()});
+    std::string digits;
+    append_little_endian(digits, values);
+    bytes(digits);
+  }
 
   /// Name, type and then the value, which the caller appends.
   void component(std::string_view name, char type) {
     text(name);
-    bytes_.push_back(type);
+    bytes({&type, 1});
   }
   void text_component(std::string_view name, std::string_view value) {
     component(name, 's');
@@ -40,15 +66,18 @@ public:
   template <class Body>
   void object(std::string_view type, const Body& body) {
     text(type);
-    const std::size_t size_at = bytes_.size();
-    number(std::uint32_t{0});
+    const std::size_t at = objects_++;
+    if (only_counts()) sizes_.push_back(0);
+    number(static_cast<std::uint32_t>(sizes_[at]));
+    const std::size_t begin = count_;
     body();
-    const std::size_t size = bytes_.size() - size_at - 4;
-    for (std::size_t i = 0; i < 4; ++i) bytes_[size_at + i] = static_cast<char>(size >> (8 * i) & 0xFF);
+    if (only_counts()) sizes_[at] = count_ - begin;
   }
 
 private:
-  std::string bytes_ = "GWYP";
+  const PutBytes* put_ = nullptr;
+  std::vector<std::size_t> sizes_;
+  std::size_t count_ = 0, objects_ = 0;
 };
 
 void write_unit(GwyWriter& writer, std::string_view name, std::string_view unit) {
@@ -74,8 +103,11 @@ void write_field(GwyWriter& writer, std::string_view name, const Grid& grid, std
     write_unit(writer, "si_unit_z", unit);
     writer.component("data", 'D');
     writer.number(static_cast<std::uint32_t>(grid.size()));
+    if (writer.only_counts()) return writer.skip(8 * grid.size());
+    std::vector<double> line(grid.columns);
     for (std::size_t row = grid.rows; row-- > 0;) {
-      for (std::size_t column = 0; column < grid.columns; ++column) writer.real(value(column, row));
+      for (std::size_t column = 0; column < grid.columns; ++column) line[column] = value(column, row);
+      writer.reals(line);
     }
   });
 }
@@ -108,20 +140,22 @@ void write_meta(GwyWriter& writer, const HeightField& field, const std::map<std:
 
 void write_gwy(const HeightField& field, const std::string& title, const std::map<std::string, std::string>& provenance,
                const std::filesystem::path& path) {
-  constexpr std::size_t room_for_words = std::size_t{1} << 20;
-  const std::size_t needed = field.grid().size() * (field.missing_count() > 0 ? 16 : 8);
-  require(needed < std::numeric_limits<std::uint32_t>::max() - 16 * room_for_words,
-          "a .gwy file holds up to 4 GiB, and this field needs " + std::to_string(needed) + " bytes; crop it");
-  std::size_t words = room_for_words / 256;
-  for (const auto& [key, value] : provenance) words += key.size() + value.size() + 4;
-  require(words < 8 * room_for_words, "more provenance than 8 MiB does not go into a .gwy file");
-  GwyWriter writer(needed + words);
-  writer.object("GwyContainer", [&] {
-    write_heights(writer, field);
-    writer.text_component("/0/data/title", clean_text(title));
-    write_meta(writer, field, provenance);
+  const auto serialise = [&](GwyWriter& writer) {
+    writer.bytes("GWYP");
+    writer.object("GwyContainer", [&] {
+      write_heights(writer, field);
+      writer.text_component("/0/data/title", clean_text(title));
+      write_meta(writer, field, provenance);
+    });
+  };
+  GwyWriter sizes;
+  serialise(sizes);
+  require(sizes.count() <= std::numeric_limits<std::uint32_t>::max(),
+          "a .gwy file holds up to 4 GiB, and this field needs " + std::to_string(sizes.count()) + " bytes; crop it");
+  write_pieces(path, [&](const PutBytes& put) {
+    GwyWriter writer(put, sizes.sizes());
+    serialise(writer);
   });
-  write_file(path, writer.bytes());
 }
 
 }  // namespace mezzotint

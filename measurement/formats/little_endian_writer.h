@@ -1,7 +1,9 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -18,6 +20,15 @@ void append_little_endian(std::string& bytes, Number value) {
   Bits bits;
   std::memcpy(&bits, &value, sizeof value);
   for (std::size_t i = 0; i < sizeof value; ++i) bytes.push_back(static_cast<char>(bits >> (8 * i) & 0xFF));
+}
+
+/// Appends many at once.
+template <class Number>
+void append_little_endian(std::string& bytes, std::span<const Number> values) {
+  if constexpr (std::endian::native == std::endian::little)
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+  else
+    for (const Number value : values) append_little_endian(bytes, value);
 }
 
 /// Puts a number or a text at a place of a header.

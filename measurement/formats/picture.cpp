@@ -8,6 +8,7 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
+#include "forward/base/bounded_memory.h"
 #include "forward/base/error.h"
 #include "measurement/formats/byte_reader.h"
 #include "measurement/formats/parsers.h"
@@ -57,7 +58,7 @@ private:
   }
 
   const std::filesystem::path& path_;
-  OIIO::Filesystem::IOMemReader memory_;
+  BoundedMemory memory_;
   OIIO::Filesystem::IOProxy* proxy_ = &memory_;
   std::unique_ptr<OIIO::ImageInput> file_;
   OIIO::ImageSpec spec_;
@@ -83,6 +84,21 @@ void require_upright_gray(const std::filesystem::path& path, const OIIO::ImageSp
   }
 }
 
+// A TIFF says how many rows go together, and the library takes memory for as many before it looks whether they are
+// there.
+void require_possible_strips(const std::filesystem::path& path, const OIIO::ImageSpec& spec, std::uint64_t file_bytes) {
+  const auto positive = [](int value) { return static_cast<std::uint64_t>(std::max(value, 1)); };
+  const std::uint64_t strip = positive(spec.get_int_attribute("tiff:RowsPerStrip", 1)) * positive(spec.width);
+  const std::uint64_t tile = positive(spec.tile_width) * positive(spec.tile_height);
+  // The last strip, or a tile at the rim, may reach beyond the picture; a strip of all rows there can be, too.
+  constexpr std::uint64_t harmless = std::uint64_t{1} << 22;
+  const std::uint64_t picture = positive(spec.width) * positive(spec.height);
+  if (std::max(strip, tile) <= std::max(harmless, 2 * picture)) return;
+  throw FileError(path, "header",
+                  fmt::format("strips or tiles of {} pixels in a picture of {} and a file of {} bytes; it is damaged",
+                              std::max(strip, tile), picture, file_bytes));
+}
+
 Picture read_pixels(const PictureFile& file, const std::filesystem::path& path, std::uint64_t file_bytes) {
   const OIIO::ImageSpec& spec = file.spec();
   require_upright_gray(path, spec);
@@ -92,6 +108,7 @@ Picture read_pixels(const PictureFile& file, const std::filesystem::path& path, 
   picture.white = white_of(path, spec);
   const std::uint64_t count = checked_grid(path, "header", {picture.columns, picture.rows, 1e-6, 1e-6}).size();
   require_plausible_size(path, count * spec.format.size(), file_bytes);
+  require_possible_strips(path, spec, file_bytes);
   if (picture.white == 0) {
     picture.pixels = file.read<float>(OIIO::TypeDesc::FLOAT, count);
     return picture;

@@ -1,5 +1,6 @@
 #include "measurement/formats/surface_file.h"
 
+#include <algorithm>
 #include <charconv>
 
 #include <fmt/format.h>
@@ -90,6 +91,16 @@ SurfaceFile read_surface(const fs::path& path, const ReadOptions& options) {
     mask_low_quality(source.file.parent_path(), *options.min_quality, surface);
   }
   return surface;
+}
+
+std::optional<SampleQuality> sample_quality(const fs::path& path, const SurfaceFile& surface) {
+  const fs::path folder = source_of(path).file.parent_path();
+  if (surface.format != "al3d" || !has_quality_map(folder)) return {};
+  std::vector<std::uint8_t> gray = read_quality_map(folder, surface.field).gray;
+  const auto middle = gray.begin() + static_cast<std::ptrdiff_t>(gray.size() / 2);
+  std::ranges::nth_element(gray, middle);
+  const auto [lowest, highest] = std::ranges::minmax(gray);
+  return SampleQuality{lowest, *middle, highest};
 }
 
 SurfaceFile read_gwy(const fs::path& path) { return parse_gwy(path, read_file(path)); }

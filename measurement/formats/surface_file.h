@@ -40,6 +40,15 @@ struct ReadOptions {
 ///         more samples than it has bytes for; sizes are checked before memory is taken.
 [[nodiscard]] SurfaceFile read_surface(const std::filesystem::path& path, const ReadOptions& options = {});
 
+/// What a quality map says of a surface's samples: gray levels, 0 … 255.
+struct SampleQuality {
+  int lowest = 0, median = 0, highest = 0;
+};
+/// Of Alicona's folders (or their dem.al3d), where they have a map; else nothing.
+/// @throws FileError for a map that cannot be read, or is of another size than the surface.
+[[nodiscard]] std::optional<SampleQuality> sample_quality(const std::filesystem::path& path,
+                                                          const SurfaceFile& surface);
+
 /// The endings of what read_surface reads, for help texts.
 inline constexpr std::string_view read_surface_formats =
     ".al3d (or its folder), .x3p, .gwy, .sur, .sdf, .opd, and with a sidecar .png, .tif, .exr, .csv, .xyz";

@@ -1,6 +1,7 @@
 #include "measurement/formats/surface_output.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "forward/base/error.h"
 #include "forward/surface/mesh.h"
@@ -31,6 +32,24 @@ void write_surface(const SurfaceFile& surface, const std::filesystem::path& path
   if (ending == ".exr") return write_relief_exr(field, surface.title, provenance, path);
   if (ending == ".obj") return write_obj(to_mesh(field), {}, path);
   throw InvalidInput(path.string() + ": surfaces are written as " + std::string(written_surface_formats));
+}
+
+std::optional<Length> rounding_of(const HeightField& field, const std::filesystem::path& path) {
+  const std::string ending = ending_of(path);
+  if (ending == ".gwy" || ending == ".x3p" || ending == ".exr") return Length{};
+  const bool is_known = ending == ".al3d" || ending == ".sur" || ending == ".png";
+  if (!is_known || field.missing_count() == field.grid().size()) return {};
+  const HeightRange range = height_range(field);
+  const double largest_um = std::max(range.highest.um(), -range.lowest.um());
+  if (ending == ".al3d") return Length::from_um(std::ldexp(largest_um, -24));
+  if (ending == ".sur") return Length::from_um(std::ldexp(largest_um, -31));
+  const double levels = field.missing_count() > 0 ? 65534.0 : 65535.0;
+  return Length::from_um(0.5 * (range.highest - range.lowest).um() / levels);
+}
+
+bool keeps_period(const std::filesystem::path& path) {
+  const std::string ending = ending_of(path);
+  return ending == ".gwy" || ending == ".png" || ending == ".exr";
 }
 
 }  // namespace mezzotint

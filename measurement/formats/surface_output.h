@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -28,6 +29,12 @@ inline constexpr std::string_view written_surface_formats = ".gwy, .x3p, .sur, .
 //   .sur              half of 2^-30 of the largest height about the datum; pitches are floats (6e-8)
 //   .png              half of 1/65535 of the height range (of 1/65534 where samples are missing)
 // A period is kept by .gwy, .png and .exr alone; title and provenance as far as a format has room for them.
+
+/// How far a height may be off when the file is read again, beside the last bit of a float. None where the ending is
+/// that of a mesh, or of nothing that is written.
+[[nodiscard]] std::optional<Length> rounding_of(const HeightField& field, const std::filesystem::path& path);
+/// Whether a file of this ending says that the field is periodic.
+[[nodiscard]] bool keeps_period(const std::filesystem::path& path);
 
 /// ISO 25178-72: absolute doubles, deflated; missing points are NaN; MD5 of points and document.
 void write_x3p(const HeightField& field, const std::string& title, const Provenance& provenance,

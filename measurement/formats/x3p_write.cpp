@@ -67,9 +67,14 @@ private:
 std::string points_of(const HeightField& field) {
   std::string bytes;
   bytes.reserve(8 * field.grid().size());
-  for (const float z : field.heights_um()) {
-    const double missing = std::numeric_limits<double>::quiet_NaN();
-    append_little_endian(bytes, std::isnan(z) ? missing : (field.datum() + Length::from_um(z)).m());
+  std::vector<double> line(field.columns());
+  for (std::size_t row = 0; row < field.rows(); ++row) {
+    for (std::size_t column = 0; column < line.size(); ++column) {
+      const float z = field.at(column, row);
+      const double missing = std::numeric_limits<double>::quiet_NaN();
+      line[column] = std::isnan(z) ? missing : (field.datum() + Length::from_um(z)).m();
+    }
+    append_little_endian(bytes, std::span<const double>(line));
   }
   return bytes;
 }

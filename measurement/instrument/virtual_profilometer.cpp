@@ -3,11 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
+
+#include <tbb/parallel_for.h>
 
 #include "forward/base/error.h"
 #include "forward/base/random.h"
-#include "forward/surface/resample.h"
+#include "measurement/correction/gaussian_filter.h"
+#include "measurement/instrument/holes.h"
+#include "measurement/instrument/light_collected.h"
+#include "measurement/instrument/placed_relief.h"
 
 namespace mezzotint {
 
@@ -17,23 +23,34 @@ constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint32_t noise_draw = 0;
 constexpr std::uint32_t missing_draw = 1;
 
+void require_size(Length length, const char* name) {
+  require(std::isfinite(length.um()) && length.um() >= 0.0,
+          std::string("the ") + name + " of a virtual profilometer must not be negative");
+}
+
+void require_share(double share, const char* name) {
+  require(share >= 0.0 && share <= 0.5,
+          std::string("the ") + name + " share of a virtual profilometer must lie in [0, 0.5]");
+}
+
 void require_valid(const VirtualProfilometer& instrument) {
-  for (const double number : {instrument.pitch.um(), instrument.shift_x.um(), instrument.shift_y.um(),
-                              instrument.rotation.radians(), instrument.tilt_x, instrument.tilt_y}) {
+  for (const double number :
+       {instrument.pitch.um(), instrument.shift_x.um(), instrument.shift_y.um(), instrument.rotation.radians(),
+        instrument.tilt_x, instrument.tilt_y, instrument.offset.um()}) {
     require(std::isfinite(number), "every figure of a virtual profilometer must be finite");
   }
   require(instrument.pitch.um() > 0.0, "the pitch of a virtual profilometer must be positive");
-  require(instrument.noise.um() >= 0.0 && std::isfinite(instrument.noise.um()),
-          "the noise of a virtual profilometer must not be negative");
-  require(instrument.missing_share >= 0.0 && instrument.missing_share <= 0.5,
-          "the missing share of a virtual profilometer must lie in [0, 0.5]");
-}
-
-/// How far the relief is known: a periodic one up to the end of its period, where it begins again.
-FieldPoint extent_of(const HeightField& relief) {
-  const std::size_t cells = relief.periodic() ? 0 : 1;
-  return {static_cast<double>(relief.columns() - cells) * relief.grid().pitch_x.um(),
-          static_cast<double>(relief.rows() - cells) * relief.grid().pitch_y.um()};
+  require_size(instrument.bandwidth, "bandwidth");
+  require_size(instrument.noise, "noise");
+  require_size(instrument.outlier_size, "outlier size");
+  require_size(instrument.hole_diameter, "hole diameter");
+  require_share(instrument.missing_share, "missing");
+  require_share(instrument.outlier_share, "outlier");
+  require_share(instrument.hole_share, "hole");
+  require(instrument.hole_share == 0.0 || instrument.hole_diameter.um() > 0.0,
+          "holes of a virtual profilometer need a diameter");
+  require(instrument.aperture >= 0.0 && instrument.aperture <= 1.0,
+          "the numerical aperture of a virtual profilometer must lie in [0, 1]");
 }
 
 std::size_t samples_along(double extent_um, double pitch_um, bool periodic) {
@@ -52,57 +69,55 @@ Grid grid_of(const HeightField& relief, Length pitch) {
           samples_along(extent.y_um, pitch.um(), relief.periodic()), pitch, pitch};
 }
 
-/// The relief as it lies under the instrument.
-class PlacedRelief {
+/// One sample at a time, each a pure function of its number.
+class Measurement {
 public:
-  PlacedRelief(const HeightField& relief, const VirtualProfilometer& instrument)
-      : relief_(relief),
-        extent_(extent_of(relief)),
-        middle_(middle_of(relief.grid())),
-        shift_{instrument.shift_x.um(), instrument.shift_y.um()},
-        cos_(std::cos(instrument.rotation.radians())),
-        sin_(std::sin(instrument.rotation.radians())) {}
+  Measurement(const HeightField& resolved, const VirtualProfilometer& instrument)
+      : instrument_(instrument),
+        placed_(resolved, instrument),
+        holes_(instrument.hole_share, instrument.hole_diameter, instrument.seed),
+        noise_(instrument.seed, RandomPurpose::InstrumentNoise),
+        outlier_(instrument.seed, RandomPurpose::InstrumentOutlier) {}
 
-  [[nodiscard]] FieldPoint middle() const { return middle_; }
-
-  /// Height under a point of the instrument.
-  [[nodiscard]] double height_um(FieldPoint seen) const {
-    const double x = seen.x_um - middle_.x_um - shift_.x_um;
-    const double y = seen.y_um - middle_.y_um - shift_.y_um;
-    const FieldPoint point{cos_ * x + sin_ * y + middle_.x_um, -sin_ * x + cos_ * y + middle_.y_um};
-    return holds(point) ? height_um_at(relief_, point) : missing;
-  }
-
-  /// Mean over a square pixel, by n × n points at its cells' centres.
-  [[nodiscard]] double pixel_um(FieldPoint seen, double width_um, int n) const {
-    double sum = 0.0;
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < n; ++i) {
-        sum += height_um({seen.x_um + ((i + 0.5) / n - 0.5) * width_um, seen.y_um + ((j + 0.5) / n - 0.5) * width_um});
-      }
-    }
-    return sum / (n * n);
+  [[nodiscard]] double height_um(FieldPoint seen, std::uint64_t number) const {
+    const double light = instrument_.aperture > 0.0 ? light_collected(placed_.slope(seen), instrument_.aperture) : 1.0;
+    if (is_unseen(seen, light, number)) return missing;
+    return placed_.pixel_um(seen) + error_um(light, number);
   }
 
 private:
-  [[nodiscard]] bool holds(FieldPoint point) const {
-    constexpr double round_off_um = 1e-7;
-    const auto within = [](double x, double end) { return x >= -round_off_um && x <= end + round_off_um; };
-    return within(point.x_um, extent_.x_um) && within(point.y_um, extent_.y_um);
+  [[nodiscard]] bool is_unseen(FieldPoint seen, double light, std::uint64_t number) const {
+    const double probability = probability_at(light, instrument_.missing_share);
+    // Nor is a sample seen whose slope is not known.
+    return !(noise_.uniform4(number, missing_draw)[0] >= probability) || holes_.cover(seen);
   }
 
-  const HeightField& relief_;
-  FieldPoint extent_;
-  FieldPoint middle_;
-  FieldPoint shift_;
-  double cos_;
-  double sin_;
+  [[nodiscard]] double error_um(double light, std::uint64_t number) const {
+    const double noise = instrument_.noise.um() * noise_.normal4(number, noise_draw)[0];
+    if (instrument_.outlier_share == 0.0) return noise;
+    const auto draw = outlier_.uniform4(number);
+    const bool spike = draw[0] < probability_at(light, instrument_.outlier_share);
+    return noise + (spike ? instrument_.outlier_size.um() * (2.0 * draw[1] - 1.0) : 0.0);
+  }
+
+  const VirtualProfilometer& instrument_;
+  PlacedRelief placed_;
+  Holes holes_;
+  RandomStream noise_, outlier_;
 };
 
-/// Points across a pixel: close enough that none of the relief's samples is passed over.
-int points_across(const HeightField& relief, Length pitch) {
-  const double finest = std::min(relief.grid().pitch_x.um(), relief.grid().pitch_y.um());
-  return static_cast<int>(std::max(1.0, std::ceil(pitch.um() / finest - 1e-9)));
+HeightField sample(const HeightField& resolved, const VirtualProfilometer& instrument, const Grid& grid) {
+  const Measurement measurement(resolved, instrument);
+  std::vector<float> heights_um(grid.size());
+  tbb::parallel_for(std::size_t{0}, grid.rows, [&](std::size_t row) {
+    for (std::size_t column = 0; column < grid.columns; ++column) {
+      const FieldPoint seen{static_cast<double>(column) * instrument.pitch.um(),
+                            static_cast<double>(row) * instrument.pitch.um()};
+      const std::size_t number = row * grid.columns + column;
+      heights_um[number] = static_cast<float>(measurement.height_um(seen, number));
+    }
+  });
+  return {grid, Continuation::Mirrored, std::move(heights_um), resolved.datum() + instrument.offset};
 }
 
 }  // namespace
@@ -111,23 +126,8 @@ HeightField measure_virtually(const HeightField& relief, const VirtualProfilomet
   require_valid(instrument);
   const Grid grid = grid_of(relief, instrument.pitch);
   require_valid_grid(grid);
-  const PlacedRelief placed(relief, instrument);
-  const int across = points_across(relief, instrument.pitch);
-  const RandomStream random(instrument.seed, RandomPurpose::InstrumentNoise);
-  std::vector<float> heights_um(grid.size());
-  for (std::size_t k = 0; k < heights_um.size(); ++k) {
-    const std::size_t column = k % grid.columns;
-    const std::size_t row = k / grid.columns;
-    const FieldPoint seen{static_cast<double>(column) * instrument.pitch.um(),
-                          static_cast<double>(row) * instrument.pitch.um()};
-    double height_um = placed.pixel_um(seen, instrument.pitch.um(), across);
-    height_um += instrument.tilt_x * (seen.x_um - placed.middle().x_um);
-    height_um += instrument.tilt_y * (seen.y_um - placed.middle().y_um);
-    height_um += instrument.noise.um() * random.normal4(k, noise_draw)[0];
-    const bool unseen = random.uniform4(k, missing_draw)[0] < instrument.missing_share;
-    heights_um[k] = static_cast<float>(unseen ? missing : height_um);
-  }
-  return {grid, Continuation::Mirrored, std::move(heights_um), relief.datum()};
+  if (instrument.bandwidth.um() == 0.0) return sample(relief, instrument, grid);
+  return sample(s_filter(relief, instrument.bandwidth), instrument, grid);
 }
 
 }  // namespace mezzotint

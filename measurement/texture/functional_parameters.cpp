@@ -7,6 +7,7 @@
 
 #include "measurement/texture/block_jackknife.h"
 #include "measurement/texture/blocks.h"
+#include "measurement/texture/height_counts.h"
 
 namespace mezzotint {
 
@@ -19,7 +20,7 @@ using Values = std::array<double, parameter_count>;
 // at both ends, where the curve is level because nothing is known beyond, are left out.
 double flattest_stretch(const BearingCurve& curve) {
   constexpr std::size_t steps = 6000;  // a tenth of a per mille of material ratio
-  const double half = 0.5 / static_cast<double>(curve.heights_um().size()), range = std::max(0.0, 0.6 - 2.0 * half);
+  const double half = 0.5 / static_cast<double>(curve.samples()), range = std::max(0.0, 0.6 - 2.0 * half);
   std::array<double, steps + 1> falls{};
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k <= steps; ++k) {
@@ -38,15 +39,14 @@ double flattest_stretch(const BearingCurve& curve) {
 
 // In the order of FunctionalParameters.
 Values values_of(const BearingCurve& curve) {
-  const double begin = flattest_stretch(curve), high = curve.height_um(begin), low = curve.height_um(begin + 0.4);
-  const double fall = (high - low) / 0.4;  // over the whole range of ratios
-  const double top = high + begin * fall, bottom = top - fall;
+  const double begin = flattest_stretch(curve);
+  const auto [top, bottom] = curve.line_through(begin, begin + 0.4);  // the equivalent straight line
   const double mr1 = curve.ratio(top), mr2 = curve.ratio(bottom);
   const double hills = curve.integral_um(0.0, mr1) - mr1 * top;
   const double dales = (1.0 - mr2) * bottom - curve.integral_um(mr2, 1.0);
   const auto material = [&](double p) { return curve.integral_um(0.0, p) - p * curve.height_um(p); };
   const auto voids = [&](double p) { return (1.0 - p) * curve.height_um(p) - curve.integral_um(p, 1.0); };
-  return {fall,
+  return {top - bottom,
           mr1 > 0.0 ? 2.0 * std::max(0.0, hills) / mr1 : 0.0,
           mr2 < 1.0 ? 2.0 * std::max(0.0, dales) / (1.0 - mr2) : 0.0,
           mr1,
@@ -58,23 +58,46 @@ Values values_of(const BearingCurve& curve) {
           curve.height_um(0.025) - curve.height_um(0.5)};
 }
 
-}  // namespace
+/// Values of the whole surface, and without each of its blocks.
+struct Jackknife {
+  Values whole{};
+  std::array<Values, block_count> without{};
+  std::array<double, block_count> samples{};
+};
 
-FunctionalParameters functional_parameters(const HeightField& field) {
-  const BearingCurve curve(field);
+Jackknife of_counts(const std::vector<HeightCounts>& blocks) {
+  const HeightCounts sum = sum_of(blocks);
+  Jackknife result{values_of(BearingCurve(sum))};
+  for (std::size_t left_out = 0; left_out < block_count; ++left_out) {
+    HeightCounts rest = sum;
+    rest -= blocks[left_out];
+    result.samples[left_out] = static_cast<double>(blocks[left_out].samples);
+    result.without[left_out] = rest.samples >= 4 ? values_of(BearingCurve(rest)) : result.whole;
+  }
+  return result;
+}
+
+Jackknife of_heights(const HeightField& field) {
   std::array<std::vector<float>, block_count> blocks;
   for_each_in_blocks(field, [&](std::size_t block, double z) { blocks[block].push_back(static_cast<float>(z)); });
-  std::array<double, block_count> samples{};
-  std::array<Values, block_count> without{};
-  const Values whole = values_of(curve);
+  Jackknife result{values_of(BearingCurve(field))};
   for (std::size_t left_out = 0; left_out < block_count; ++left_out) {
-    samples[left_out] = static_cast<double>(blocks[left_out].size());
+    result.samples[left_out] = static_cast<double>(blocks[left_out].size());
     std::vector<float> rest;
     for (std::size_t block = 0; block < block_count; ++block)
       if (block != left_out) rest.insert(rest.end(), blocks[block].begin(), blocks[block].end());
-    without[left_out] = samples[left_out] > 0.0 && rest.size() >= 4 ? values_of(BearingCurve(std::move(rest))) : whole;
+    const bool enough = result.samples[left_out] > 0.0 && rest.size() >= 4;
+    result.without[left_out] = enough ? values_of(BearingCurve(std::move(rest))) : result.whole;
   }
-  const auto quantity = [&](std::size_t k, const char* unit) {
+  return result;
+}
+
+}  // namespace
+
+FunctionalParameters functional_parameters(const HeightField& field) {
+  const std::vector<HeightCounts> blocks = counts_in_blocks(field);
+  const auto [whole, without, samples] = blocks.empty() ? of_heights(field) : of_counts(blocks);
+  const auto quantity = [&whole = whole, &without = without, &samples = samples](std::size_t k, const char* unit) {
     std::array<double, block_count> column{};
     std::ranges::transform(without, column.begin(), [k](const Values& values) { return values[k]; });
     return Quantity{whole[k], unit, jackknife_standard_error(whole[k], column, samples)};

@@ -10,8 +10,10 @@ namespace mezzotint {
 ///
 /// Units    Sk, Spk, Svk, Sxp in µm; Smr1, Smr2 in 1 (a ratio, not per cent); Vmp, Vmc, Vvc, Vvv in µm³/µm² (= ml/m²),
 ///          printed as µm.
-/// Sk       the straight line through the two points 40 % of material ratio apart between which the curve falls least;
-///          where several stretches fall equally little, the middle of them.
+/// Sk       fall of the equivalent straight line over all material ratios: the line of least squares (in the direction
+///          of the heights) through the stretch of 40 % over which the curve falls least; where neighbouring stretches
+///          fall equally little, the middle of them. A curve that is not S-shaped (a sine's is steepest in its middle)
+///          has its flattest stretch at an end, or at both: Smr1, Smr2, Spk and Svk then hang on rounding.
 /// Settings Smr1, Smr2 from that line; volumes at 10 % and 80 %; Sxp from 2.5 % to 50 %: the standard's defaults.
 /// Standard errors: delete-one-block jackknife over 16 blocks.
 /// Source   ISO 25178-2:2021, 4.4 and annex; ISO 13565-2 for the line.

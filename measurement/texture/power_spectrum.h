@@ -1,13 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "forward/surface/height_field.h"
 
 namespace mezzotint {
 
-/// The areal power spectral density of heights, and what it is averaged over rings and along directions.
+/// The areal power spectral density of heights, and what it is along directions.
 ///
 /// Frame    spatial frequencies in cycles a µm; frequency (k_x − columns/2)/(columns·pitch_x) in column k_x, rows
 ///          likewise, so that 0 stands in column columns/2. S(−f) = S(f).
@@ -19,6 +20,7 @@ struct PowerSpectrum {
   std::size_t columns = 0, rows = 0;
   Length pitch_x, pitch_y;
   std::vector<double> density_um4;
+  bool windowed = false;  ///< a patch: neighbouring frequencies are then correlated
 
   [[nodiscard]] double frequency_x_per_um(std::size_t column) const {
     const std::size_t middle = columns / 2;
@@ -35,19 +37,33 @@ struct PowerSpectrum {
 
 /// Mean density over rings |f|, one frequency step (of the longer side) wide each; the mean's standard error from the
 /// scatter within the ring (each frequency of a Gaussian surface is exponentially distributed and independent of the
-/// others; S(−f) = S(f) counts once).
+/// others; S(−f) = S(f) counts once; Hann's window leaves 1/1.87 as many that are independent).
 struct RadialSpectrum {
   std::vector<double> frequency_per_um;
   std::vector<double> density_um4, standard_error_um4;
 };
 [[nodiscard]] RadialSpectrum radial_spectrum(const PowerSpectrum& spectrum);
 
+/// Frequencies that count for directions: from `least_per_um` (form, window) to `most_per_um`.
+struct AngularLimits {
+  double least_per_um = 0.0;
+  double most_per_um = std::numeric_limits<double>::infinity();
+};
+
 /// Power by the direction of the wave vector, from 0° up to, but not including, 180°, counter-clockwise from +x: shares
-/// of Sq² that sum to 1. Frequencies below `least_per_um` are left out (form, window).
+/// of the power within the limits that sum to 1.
+/// How      the spectrum's integral along rays from the middle, were it interpolated bilinearly: each frequency's power
+///          is spread over the directions that its cell takes up. (Counted in the direction of its middle alone, white
+///          noise would have its strongest direction along an axis, where most middles lie.) So a field of few waves
+///          resolves directions coarsely.
 struct AngularSpectrum {
   std::vector<double> share;  ///< of direction k·180°/size
 };
-[[nodiscard]] AngularSpectrum angular_spectrum(const PowerSpectrum& spectrum, double least_per_um = 0.0,
+/// @throws InvalidInput where no power is within the limits.
+[[nodiscard]] AngularSpectrum angular_spectrum(const PowerSpectrum& spectrum, const AngularLimits& limits = {},
                                                std::size_t directions = 180);
+
+/// The share of Sq² that is within the limits; 0 for a flat field.
+[[nodiscard]] double angular_power_share(const PowerSpectrum& spectrum, const AngularLimits& limits);
 
 }  // namespace mezzotint

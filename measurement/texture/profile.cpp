@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "forward/base/error.h"
+#include "measurement/texture/block_jackknife.h"
 
 namespace mezzotint {
 
@@ -99,59 +100,111 @@ Quantity mean_of(const std::vector<double>& values) {
   return {mean, "µm", values.size() > 1 ? std::sqrt(squares / (n - 1.0) / n) : nan};
 }
 
+/// Sums over a stretch of the profile.
 struct Section {
-  double a = 0.0, q = 0.0, p = 0.0, v = 0.0;
+  double n = 0.0, absolute = 0.0, second = 0.0, third = 0.0, fourth = 0.0;
+  double highest = 0.0, lowest = 0.0;  // at least the mean line
+  double slopes = 0.0, square_slopes = 0.0;
+
+  void add(const Section& other) {
+    n += other.n;
+    absolute += other.absolute;
+    second += other.second;
+    third += other.third;
+    fourth += other.fourth;
+    highest = std::max(highest, other.highest);
+    lowest = std::min(lowest, other.lowest);
+    slopes += other.slopes;
+    square_slopes += other.square_slopes;
+  }
+  [[nodiscard]] double mean_deviation() const { return absolute / n; }
+  [[nodiscard]] double rms() const { return std::sqrt(second / n); }
+  [[nodiscard]] double skewness() const { return third / n / std::pow(rms(), 3); }
+  [[nodiscard]] double kurtosis() const { return fourth / n / std::pow(rms(), 4); }
+  [[nodiscard]] double rms_slope() const { return slopes > 0.0 ? std::sqrt(square_slopes / slopes) : nan; }
 };
 
-Section section_of(const std::vector<double>& heights_um, std::size_t begin, std::size_t end) {
-  Section section;
-  double n = 0.0, highest = -HUGE_VAL, lowest = HUGE_VAL;
-  for (std::size_t k = begin; k < end; ++k) {
-    const double z = heights_um[k];
-    if (std::isnan(z)) continue;
-    n += 1.0;
-    section.a += std::abs(z);
-    section.q += z * z;
-    highest = std::max(highest, z);
-    lowest = std::min(lowest, z);
-  }
-  if (n == 0.0) return {nan, nan, nan, nan};
-  return {section.a / n, std::sqrt(section.q / n), std::max(0.0, highest), std::max(0.0, -lowest)};
+// The seven-point derivative that ISO 4287 gives for local slopes; NaN at the ends and beside missing values.
+double local_slope(const Profile& profile, std::size_t k) {
+  if (k < 3 || k + 3 >= profile.heights_um.size()) return nan;
+  const double* z = profile.heights_um.data() + k;
+  return (z[3] - 9.0 * z[2] + 45.0 * z[1] - 45.0 * z[-1] + 9.0 * z[-2] - z[-3]) / 60.0 / profile.spacing.um();
 }
 
-// Places (in samples) where a peak that counts follows a valley that counts: where elements begin.
-std::vector<double> upward_crossings(const std::vector<double>& heights_um, double least_um, double least_width) {
-  std::vector<double> crossings;
-  double last_crossing = nan;
+Section section_of(const Profile& profile, std::size_t begin, std::size_t end) {
+  Section section;
+  for (std::size_t k = begin; k < end; ++k) {
+    const double z = profile.heights_um[k];
+    if (std::isnan(z)) continue;
+    const double slope = local_slope(profile, k), known = std::isnan(slope) ? 0.0 : 1.0;
+    section.add({1.0, std::abs(z), z * z, z * z * z, z * z * z * z, z, z, known, known > 0.0 ? slope * slope : 0.0});
+  }
+  return section;
+}
+
+// A statistic of the whole profile, with the standard error from leaving out each sampling length in turn.
+template <class Statistic>
+Quantity estimate(const std::vector<Section>& sections, const Section& whole, const char* unit,
+                  const Statistic& statistic) {
+  std::vector<double> without, samples;
+  for (std::size_t j = 0; j < sections.size(); ++j) {
+    Section rest;
+    for (std::size_t k = 0; k < sections.size(); ++k)
+      if (k != j) rest.add(sections[k]);
+    without.push_back(statistic(rest));
+    samples.push_back(sections[j].n);
+  }
+  return {statistic(whole), unit, jackknife_standard_error(statistic(whole), without, samples)};
+}
+
+// Widths, in samples, of elements: from one place where a peak that counts follows a valley that counts to the next. A
+// missing value ends an element unfinished.
+std::vector<double> element_widths(const std::vector<double>& heights_um, double least_um, double least_width) {
+  std::vector<double> widths;
+  double begin = nan, last_crossing = nan;
   int side = 0;  // of the last excursion that counts
   for (std::size_t k = 1; k < heights_um.size(); ++k) {
     const double before = heights_um[k - 1], z = heights_um[k];
     if (std::isnan(z) || std::isnan(before)) {
       side = 0;
-      last_crossing = nan;
+      begin = last_crossing = nan;
       continue;
     }
     if (before < 0.0 && z >= 0.0) last_crossing = static_cast<double>(k) - z / (z - before);
     if (z <= -least_um) side = -1;
     if (z < least_um || side == 1) continue;
-    const bool wide = crossings.empty() || last_crossing - crossings.back() >= least_width;
-    if (side == -1 && !std::isnan(last_crossing) && wide) crossings.push_back(last_crossing);
+    const double width = last_crossing - begin;
+    if (side == -1 && !std::isnan(last_crossing) && !(width < least_width)) {
+      if (!std::isnan(width)) widths.push_back(width);
+      begin = last_crossing;
+    }
     side = 1;
   }
-  return crossings;
+  return widths;
 }
 
-double mean_square_slope(const Profile& profile) {
-  double sum = 0.0, n = 0.0;
-  // The seven-point derivative that ISO 4287 gives for local slopes.
-  for (std::size_t k = 3; k + 3 < profile.heights_um.size(); ++k) {
-    const double* z = profile.heights_um.data() + k;
-    const double slope = (z[3] - 9.0 * z[2] + 45.0 * z[1] - 45.0 * z[-1] + 9.0 * z[-2] - z[-3]) / 60.0;
-    if (std::isnan(slope)) continue;
-    sum += slope * slope;
-    n += 1.0;
+std::vector<Section> sampling_lengths_of(const Profile& profile, double samples_a_length) {
+  const auto count = profile.heights_um.size();
+  const auto lengths = static_cast<std::size_t>(std::floor((static_cast<double>(count) + 1e-6) / samples_a_length));
+  const auto edge = [&](std::size_t i) {
+    return std::min(count, static_cast<std::size_t>(std::llround(static_cast<double>(i) * samples_a_length)));
+  };
+  std::vector<Section> sections;
+  for (std::size_t k = 0; k < lengths; ++k) sections.push_back(section_of(profile, edge(k), edge(k + 1)));
+  return sections;
+}
+
+void add_heights(ProfileParameters& result, const std::vector<Section>& sections) {
+  std::vector<double> p, v, z;
+  for (const Section& section : sections) {
+    if (section.n == 0.0) continue;
+    p.push_back(section.highest);
+    v.push_back(-section.lowest);
+    z.push_back(section.highest - section.lowest);
   }
-  return n > 0.0 ? std::sqrt(sum / n) / profile.spacing.um() : nan;
+  result.z = mean_of(z);
+  result.p = mean_of(p);
+  result.v = mean_of(v);
 }
 
 }  // namespace
@@ -159,53 +212,28 @@ double mean_square_slope(const Profile& profile) {
 ProfileParameters profile_parameters(const Profile& given, const ProfileFilter& filter) {
   Profile profile = given;
   take_out_line(profile);
-  const auto count = profile.heights_um.size();
   if (filter.lambda_s.um() > 0.0) profile = mean_line(profile, filter.lambda_s);
   const bool roughness = filter.lambda_c.um() > 0.0;
   if (roughness) subtract(profile, mean_line(profile, filter.lambda_c));
-  const double samples_a_length = roughness ? filter.lambda_c / profile.spacing : static_cast<double>(count);
-  const double lengths = std::floor((static_cast<double>(count) + 1e-6) / samples_a_length);
-  require(lengths >= 1.0, "the profile is shorter than one sampling length (lambda_c); take a longer one");
+  const auto count = static_cast<double>(profile.heights_um.size());
+  const double samples_a_length = roughness ? filter.lambda_c / profile.spacing : count;
+  const std::vector<Section> sections = sampling_lengths_of(profile, samples_a_length);
+  require(!sections.empty(), "the profile is shorter than one sampling length (lambda_c); take a longer one");
+  const Section whole = section_of(profile, 0, profile.heights_um.size());
 
   ProfileParameters result;
   result.letter = roughness ? 'R' : 'P';
-  result.sampling_lengths = static_cast<std::size_t>(lengths);
-  std::vector<double> a, q, p, v, z;
-  for (std::size_t k = 0; k < result.sampling_lengths; ++k) {
-    const auto edge = [&](std::size_t i) {
-      return std::min(count, static_cast<std::size_t>(std::llround(static_cast<double>(i) * samples_a_length)));
-    };
-    const Section section = section_of(profile.heights_um, edge(k), edge(k + 1));
-    if (std::isnan(section.a)) continue;
-    a.push_back(section.a);
-    q.push_back(section.q);
-    p.push_back(section.p);
-    v.push_back(section.v);
-    z.push_back(section.p + section.v);
-  }
-  result.z = mean_of(z);
-  result.p = mean_of(p);
-  result.v = mean_of(v);
-  const Section whole = section_of(profile.heights_um, 0, count);
-  result.a = {whole.a, "µm", mean_of(a).standard_error};
-  result.q = {whole.q, "µm", mean_of(q).standard_error};
-  result.t = {whole.p + whole.v, "µm", nan};
-  double n = 0.0, third = 0.0, fourth = 0.0;
-  for (const double height : profile.heights_um) {
-    if (std::isnan(height)) continue;
-    n += 1.0;
-    third += std::pow(height, 3);
-    fourth += std::pow(height, 4);
-  }
-  result.sk = {third / n / std::pow(whole.q, 3), "1", nan};
-  result.ku = {fourth / n / std::pow(whole.q, 4), "1", nan};
-  result.dq = {mean_square_slope(profile), "1", nan};
-  result.missing_share = 1.0 - n / static_cast<double>(count);
-  const std::vector<double> crossings =
-      upward_crossings(profile.heights_um, 0.1 * result.z.value, 0.01 * samples_a_length);
-  std::vector<double> widths;
-  for (std::size_t k = 1; k < crossings.size(); ++k)
-    widths.push_back((crossings[k] - crossings[k - 1]) * profile.spacing.um());
+  result.sampling_lengths = sections.size();
+  add_heights(result, sections);
+  result.a = estimate(sections, whole, "µm", [](const Section& s) { return s.mean_deviation(); });
+  result.q = estimate(sections, whole, "µm", [](const Section& s) { return s.rms(); });
+  result.sk = estimate(sections, whole, "1", [](const Section& s) { return s.skewness(); });
+  result.ku = estimate(sections, whole, "1", [](const Section& s) { return s.kurtosis(); });
+  result.dq = estimate(sections, whole, "1", [](const Section& s) { return s.rms_slope(); });
+  result.t = {whole.highest - whole.lowest, "µm", nan};
+  result.missing_share = 1.0 - whole.n / count;
+  std::vector<double> widths = element_widths(profile.heights_um, 0.1 * result.z.value, 0.01 * samples_a_length);
+  for (double& width : widths) width *= profile.spacing.um();
   result.sm = widths.empty() ? Quantity{nan, "µm", nan} : mean_of(widths);
   return result;
 }

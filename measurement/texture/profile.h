@@ -38,8 +38,12 @@ struct ProfileFilter {
 /// Units    a, q, t, p, v, z, Sm in µm; sk, ku, dq in 1.
 /// z, p, v  means over the sampling lengths (of lambda_c; or the whole profile); t over the whole.
 /// Sm       mean width of profile elements: a peak with the valley beside it, where both rise and fall by a tenth of z
-///          and are wider than 1 % of the sampling length. NaN where no whole element is found.
-/// Standard errors: of the mean over sampling lengths where there are two or more; else NaN.
+///          and are wider than 1 % of the sampling length. NaN where no whole element is found; one that a missing
+///          value interrupts does not count.
+/// Slopes   dq by the seven-point derivative of ISO 4287, of the sixth order in the spacing; without the three values
+///          at each end and beside missing ones.
+/// Standard errors: where there are two sampling lengths or more, else NaN. z, p, v: of their mean; a, q, sk, ku, dq:
+///          jackknife over sampling lengths; Sm: of the mean over elements; t is an extreme value and has none.
 /// Source   ISO 4287:1997 / ISO 21920-2:2021 (Ra, Rq, Rt, Rp, Rv, Rz, RSm, Rsk, Rku, Rdq).
 struct ProfileParameters {
   char letter = 'P';  ///< 'P' or 'R'

@@ -4,10 +4,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "forward/base/error.h"
+#include "forward/surface/row_bands.h"
 #include "measurement/texture/block_jackknife.h"
 #include "measurement/texture/blocks.h"
+#include "measurement/texture/roughness_rows.h"
 
 namespace mezzotint {
 
@@ -16,28 +20,35 @@ namespace {
 template <class Value>
 using PerBlock = std::array<Value, block_count>;
 
-/// Sums over a set of samples of powers of the height above a reference.
-struct PowerSums {
-  double count = 0.0, first = 0.0, second = 0.0, third = 0.0, fourth = 0.0;
+/// One sum for each block.
+template <class Sums>
+struct BlockSums {
+  PerBlock<Sums> blocks{};
 
-  void add(double z) {
-    count += 1.0;
-    first += z;
-    second += z * z;
-    third += z * z * z;
-    fourth += z * z * z * z;
-  }
-  void add(const PowerSums& other) {
-    count += other.count;
-    first += other.first;
-    second += other.second;
-    third += other.third;
-    fourth += other.fourth;
-  }
-  [[nodiscard]] PowerSums without(const PowerSums& part) const {
-    return {count - part.count, first - part.first, second - part.second, third - part.third, fourth - part.fourth};
+  BlockSums& operator+=(const BlockSums& other) {
+    for (std::size_t j = 0; j < block_count; ++j) blocks[j] += other.blocks[j];
+    return *this;
   }
 };
+
+// visit(sums of a block, heights): all stretches of rows that lie in one block.
+template <class Sums, class Visit>
+PerBlock<Sums> sums_in_blocks(const HeightField& field, const Visit& visit) {
+  return sum_of_bands(field.rows(), BlockSums<Sums>{},
+                      [&](std::size_t first, std::size_t end) {
+                        BlockSums<Sums> sums;
+                        for (std::size_t row = first; row < end; ++row) {
+                          const std::size_t above = blocks_a_side * block_along(row, field.rows());
+                          for_each_block_along(
+                              field.columns(), [&](std::size_t block, std::size_t begin, std::size_t behind) {
+                                visit(sums.blocks[above + block],
+                                      field.heights_um().subspan(row * field.columns() + begin, behind - begin));
+                              });
+                        }
+                        return sums;
+                      })
+      .blocks;
+}
 
 struct CentralMoments {
   double mean = 0.0, rms = 0.0, skewness = 0.0, kurtosis = 0.0;
@@ -53,20 +64,10 @@ CentralMoments central_moments(const PowerSums& sums) {
   return {d, std::sqrt(variance), third / (variance * std::sqrt(variance)), fourth / (variance * variance)};
 }
 
-double mean_um(const HeightField& field) {
-  double sum = 0.0, count = 0.0;
-  for_each_in_blocks(field, [&](std::size_t, double z) {
-    sum += z;
-    count += 1.0;
-  });
-  require(count >= 4.0, "roughness needs four measured samples at least");
-  return sum / count;
-}
-
 template <class Sums>
 Sums total_of(const PerBlock<Sums>& blocks) {
   Sums total;
-  for (const Sums& block : blocks) total.add(block);
+  for (const Sums& block : blocks) total += block;
   return total;
 }
 
@@ -87,84 +88,99 @@ Quantity estimate(const PerBlock<Sums>& blocks, const char* unit, const Statisti
   return {whole, unit, jackknife_standard_error(whole, without, counts_of(blocks))};
 }
 
-// The mean that Sa refers to moves when a block is left out, so each needs a sum of its own.
-Quantity mean_deviation(const HeightField& field, double mean, const PerBlock<PowerSums>& blocks) {
-  const PowerSums total = total_of(blocks);
-  PerBlock<double> means_without{}, sums_without{};
-  for (std::size_t j = 0; j < block_count; ++j) means_without[j] = central_moments(total.without(blocks[j])).mean;
-  double sum = 0.0;
-  for_each_in_blocks(field, [&](std::size_t block, double height) {
-    const double z = height - mean;
-    sum += std::abs(z - total.first / total.count);
-    for (std::size_t j = 0; j < block_count; ++j) {
-      sums_without[j] += j == block ? 0.0 : std::abs(z - means_without[j]);
-    }
-  });
-  PerBlock<double> without{};
-  for (std::size_t j = 0; j < block_count; ++j) without[j] = sums_without[j] / (total.count - blocks[j].count);
-  const double whole = sum / total.count;
-  return {whole, "µm", jackknife_standard_error(whole, without, counts_of(blocks))};
-}
-
-/// Sums over the triangles of whole cells.
-struct SlopeSums {
-  double count = 0.0, squares = 0.0, area_excess = 0.0;
-
-  void add(double slope_x, double slope_y) {
-    const double square = slope_x * slope_x + slope_y * slope_y;
-    count += 1.0;
-    squares += square;
-    area_excess += square / (1.0 + std::sqrt(1.0 + square));  // √(1+s²) − 1 without cancellation
-  }
-  void add(const SlopeSums& other) {
-    count += other.count;
-    squares += other.squares;
-    area_excess += other.area_excess;
-  }
-  [[nodiscard]] SlopeSums without(const SlopeSums& part) const {
-    return {count - part.count, squares - part.squares, area_excess - part.area_excess};
+/// Σ |z − mean| about the mean of all blocks, and about that of all but each.
+struct Deviations {
+  std::array<double, reference_count> sums{};
+  Deviations& operator+=(const Deviations& other) {
+    for (std::size_t k = 0; k < reference_count; ++k) sums[k] += other.sums[k];
+    return *this;
   }
 };
 
-// The two triangles a cell of `to_mesh`; a periodic field has the cells that close it.
-PerBlock<SlopeSums> slope_sums(const HeightField& field) {
+// The mean that Sa refers to moves when a block is left out, so each needs a sum of its own.
+Quantity mean_deviation(const HeightField& field, double mean, const PerBlock<PowerSums>& heights) {
+  static_assert(reference_count == block_count + 1);
+  const PowerSums total = total_of(heights);
+  std::array<double, reference_count> references{};
+  for (std::size_t j = 0; j < block_count; ++j) references[j] = mean + central_moments(total.without(heights[j])).mean;
+  references[block_count] = mean + central_moments(total).mean;
+  const auto blocks = sums_in_blocks<Deviations>(field, [&](Deviations& sums, std::span<const float> heights_um) {
+    add_deviations(heights_um, references, sums.sums);
+  });
+  const Deviations all = total_of(blocks);
+  PerBlock<double> without{};
+  for (std::size_t j = 0; j < block_count; ++j)
+    without[j] = (all.sums[j] - blocks[j].sums[j]) / (total.count - heights[j].count);
+  const double whole = all.sums[block_count] / total.count;
+  return {whole, "µm", jackknife_standard_error(whole, without, counts_of(heights))};
+}
+
+// The row behind, for a period that closes: its first sample again at its end.
+std::vector<float> closed(std::span<const float> row_um) {
+  std::vector<float> closed_um(row_um.begin(), row_um.end());
+  closed_um.push_back(row_um.front());
+  return closed_um;
+}
+
+// A periodic field has the cells that close it.
+PerBlock<SlopeSums> slopes_in_blocks(const HeightField& field) {
   const std::size_t closing = field.periodic() ? 0 : 1;
   const std::size_t columns = field.columns() - closing, rows = field.rows() - closing;
   const double per_x = 1.0 / field.grid().pitch_x.um(), per_y = 1.0 / field.grid().pitch_y.um();
-  PerBlock<SlopeSums> blocks;
-  for (std::size_t row = 0; row < rows; ++row) {
-    const std::size_t next_row = row + 1 == field.rows() ? 0 : row + 1;
-    for (std::size_t column = 0; column < columns; ++column) {
-      const std::size_t next = column + 1 == field.columns() ? 0 : column + 1;
-      const double z00 = field.at(column, row), z10 = field.at(next, row);
-      const double z01 = field.at(column, next_row), z11 = field.at(next, next_row);
-      if (std::isnan(z00 + z10 + z01 + z11)) continue;
-      SlopeSums& sums = blocks[blocks_a_side * block_along(row, rows) + block_along(column, columns)];
-      sums.add((z10 - z00) * per_x, (z11 - z10) * per_y);
-      sums.add((z11 - z01) * per_x, (z01 - z00) * per_y);
-    }
-  }
-  return blocks;
+  const auto row_at = [&](std::size_t row) {
+    const auto row_um = field.heights_um().subspan(row % field.rows() * field.columns(), field.columns());
+    return field.periodic() ? closed(row_um) : std::vector<float>(row_um.begin(), row_um.end());
+  };
+  return sum_of_bands(rows, BlockSums<SlopeSums>{},
+                      [&](std::size_t first, std::size_t end) {
+                        BlockSums<SlopeSums> sums;
+                        std::vector<float> low = row_at(first), high;
+                        for (std::size_t row = first; row < end; ++row) {
+                          high = row_at(row + 1);
+                          const std::size_t above = blocks_a_side * block_along(row, rows);
+                          for_each_block_along(columns, [&](std::size_t block, std::size_t begin, std::size_t behind) {
+                            const auto part = [&](const std::vector<float>& row_um) {
+                              return std::span(row_um).subspan(begin, behind - begin + 1);
+                            };
+                            sums.blocks[above + block] += slope_sums(part(low), part(high), per_x, per_y);
+                          });
+                          low.swap(high);
+                        }
+                        return sums;
+                      })
+      .blocks;
 }
 
-PerBlock<PowerSums> power_sums(const HeightField& field, double mean) {
-  PerBlock<PowerSums> blocks;
-  for_each_in_blocks(field, [&](std::size_t block, double z) { blocks[block].add(z - mean); });
-  return blocks;
+PerBlock<PowerSums> powers_in_blocks(const HeightField& field, double reference_um) {
+  return sums_in_blocks<PowerSums>(
+      field, [&](PowerSums& sums, std::span<const float> heights_um) { sums += power_sums(heights_um, reference_um); });
+}
+
+// Any measured height will do to begin with: sums about it lose no digits to an offset.
+double mean_um(const HeightField& field) {
+  const auto heights_um = field.heights_um();
+  const auto first = std::ranges::find_if(heights_um, [](float z) { return !std::isnan(z); });
+  const double start = first == heights_um.end() ? 0.0 : static_cast<double>(*first);
+  const PowerSums sums = total_of(powers_in_blocks(field, start));
+  require(sums.count >= 4.0, "roughness needs four measured samples at least");
+  return start + sums.first / sums.count;
 }
 
 }  // namespace
 
 AreaRoughness area_roughness(const HeightField& field) {
   const double mean = mean_um(field);
-  const PerBlock<SlopeSums> slopes = slope_sums(field);
+  const PerBlock<SlopeSums> slopes = slopes_in_blocks(field);
   require(total_of(slopes).count > 0.0, "no cell with four measured corners: the relief has no slopes");
-  const PerBlock<PowerSums> heights = power_sums(field, mean);
+  const PerBlock<PowerSums> heights = powers_in_blocks(field, mean);
   const HeightRange range = height_range(field);
   AreaRoughness result;
   result.Sa = mean_deviation(field, mean, heights);
   result.Sq = estimate(heights, "µm", [](const PowerSums& sums) { return central_moments(sums).rms; });
-  result.Sz = {(range.highest - range.lowest).um(), "µm", std::numeric_limits<double>::quiet_NaN()};
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  result.Sp = {range.highest.um() - mean, "µm", nan};
+  result.Sv = {mean - range.lowest.um(), "µm", nan};
+  result.Sz = {(range.highest - range.lowest).um(), "µm", nan};
   result.Ssk = estimate(heights, "1", [](const PowerSums& sums) { return central_moments(sums).skewness; });
   result.Sku = estimate(heights, "1", [](const PowerSums& sums) { return central_moments(sums).kurtosis; });
   result.Sdq = estimate(slopes, "1", [](const SlopeSums& sums) { return std::sqrt(sums.squares / sums.count); });

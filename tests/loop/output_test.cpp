@@ -17,7 +17,10 @@ const std::vector<std::string> every_command = {
     "validate run/design.gwy --measured run/measured.gwy -o validation",
     "synthesize pattern.toml -o relief.gwy",
     "info relief.gwy",
-    "roughness relief.gwy",
+    "roughness relief.gwy --profile 0,16,124,16 --report texture.html",
+    "measure relief.gwy -o scan.al3d --bandwidth 30 --noise 20 --outliers 0.01,5 --offset 76",
+    "synthesize pattern.toml -o waves.gwy --set grid.columns=128 --set grid.rows=128",
+    "texture-fit waves.gwy -o fitted.toml",
     "correct relief.gwy -o corrected.gwy --level plane",
     "convert relief.gwy relief.obj",
     "mesh relief.gwy -o mesh.obj",
@@ -110,13 +113,13 @@ TEST(Output, IntoAPlaceThatCannotBeWrittenFailsInWords) {
   ASSERT_EQ(here.mezzotint(words("run small.toml --out run")).status, 0);
   ASSERT_EQ(here.mezzotint(words("synthesize pattern.toml -o relief.gwy")).status, 0);
   const Files before = here.files();
-  for (const char* line :
-       {"run small.toml --out small.toml/run", "design small.toml --out small.toml/run",
-        "synthesize pattern.toml -o small.toml/relief.gwy", "synthesize pattern.toml -o missing/relief.gwy",
-        "convert relief.gwy missing/relief.obj", "correct relief.gwy -o missing/relief.gwy",
-        "mesh relief.gwy -o missing/relief.obj", "print run/job.uvj -o missing/printed.gwy",
-        "bsdf relief.gwy --incidence 20,0 --samples 1e4 -o missing/lobe.exr",
-        "validate run/design.gwy --measured run/measured.gwy -o small.toml"}) {
+  for (const char* line : {"run small.toml --out small.toml/run", "design small.toml --out small.toml/run",
+                           "synthesize pattern.toml -o small.toml/relief.gwy",
+                           "synthesize pattern.toml -o missing/relief.gwy", "convert relief.gwy missing/relief.obj",
+                           "correct relief.gwy -o missing/relief.gwy", "mesh relief.gwy -o missing/relief.obj",
+                           "measure relief.gwy -o missing/scan.al3d", "print run/job.uvj -o missing/printed.gwy",
+                           "bsdf relief.gwy --incidence 20,0 --samples 1e4 -o missing/lobe.exr",
+                           "validate run/design.gwy --measured run/measured.gwy -o small.toml"}) {
     const Ending ending = here.mezzotint(words(std::string(line) + " --quiet"));
     EXPECT_EQ(ending.status, 1) << line << "\n" << ending.err;
     EXPECT_EQ(ending.out, "") << line;

@@ -26,6 +26,13 @@ TEST(Commands, LeadFromAPatternToItsLobe) {
   EXPECT_EQ(json("info tile.gwy").at("periodic"), true);
   EXPECT_EQ(json("info relief.gwy").at("periodic"), false);
 
+  EXPECT_EQ(json("info relief.gwy").at("range").at("unit"), "µm");
+  EXPECT_EQ(json("info relief.gwy").at("missing_share").at("value"), 0.0);
+  const auto copy = json("convert tile.gwy copy.sur");
+  EXPECT_EQ(copy.at("rows"), 64);
+  EXPECT_EQ(copy.at("period_lost"), true);
+  EXPECT_LT(copy.at("height_rounding").at("value"), 1e-8);
+
   const auto corrected = json("correct relief.gwy -o corrected.gwy --level plane --outliers 5 --fill");
   EXPECT_EQ(corrected.at("missing_after"), 0);
   EXPECT_EQ(json("correct relief.gwy -o part.gwy --crop 8,8,32,16").at("written"), "part.gwy");
@@ -42,6 +49,13 @@ TEST(Commands, LeadFromAPatternToItsLobe) {
   EXPECT_NEAR(profile.at("Pq").at("value"), 3.0 / std::sqrt(2.0), 0.1);
   // As long as the filter's cut-off, half of a wave is left: 0.75 µm of 1.5.
   EXPECT_NEAR(json("roughness tile.gwy --level none --l-filter 28.6216701").at("Sq").at("value"), 0.75, 1e-3);
+
+  // The optics pass half of a wave as long as the bandwidth, the tilt is levelled, the offset is the scan's datum.
+  const auto scan = json("measure tile.gwy -o scan.al3d --bandwidth 28.6216701 --tilt -0.01,0.02 --offset 76");
+  EXPECT_EQ(scan.at("missing"), 0);
+  EXPECT_NEAR(json("info scan.al3d").at("datum").at("value"), 76000.0, 5.0);
+  EXPECT_NEAR(json("roughness scan.al3d").at("Sq").at("value"), 0.75, 5e-3);  // the plane takes a little of the waves
+  EXPECT_EQ(json("measure pattern.toml -o scan.al3d --pitch 4 --dropouts 0.1").at("columns"), 32);
 
   EXPECT_EQ(json("mesh relief.gwy -o relief.obj").at("vertices"), 64 * 64);
   EXPECT_NE(here.read("relief.mtl").find("Ni 1.5"), std::string::npos);

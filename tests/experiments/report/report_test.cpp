@@ -196,12 +196,13 @@ TEST(DifferenceMap, AddsErrorsInQuadrature) {
 }
 
 TEST(ReliefMaps, ReduceABigReliefByBlockMeansAndSaySo) {
-  // 1024 columns: blocks of 2 × 2. Column pairs hold 4k and 4k + 2, so every mean is 4k + 1; the
-  // first block has three gaps, and the second nothing but gaps.
+  // 1024 columns: blocks of 2 × 2. Column pairs hold 4k and 4k + 2, so every mean is 4k + 1; the first block has two
+  // gaps, the second nothing but gaps, and the third three: less than half of it was seen.
   HeightField field({1024, 2, Length::from_um(0.5), Length::from_um(2.0)}, Continuation::Mirrored);
   for (std::size_t c = 0; c < 1024; ++c) field.at(c, 0) = field.at(c, 1) = static_cast<float>(2 * c);
-  field.at(1, 0) = field.at(0, 1) = field.at(1, 1) = NAN;
+  field.at(1, 0) = field.at(0, 1) = NAN;
   field.at(2, 0) = field.at(3, 0) = field.at(2, 1) = field.at(3, 1) = NAN;
+  field.at(4, 0) = field.at(5, 0) = field.at(4, 1) = NAN;
   const json component = relief_maps(named("p"), {{"r", field}});
   const json& relief = component["reliefs"][0];
   EXPECT_EQ(relief["block"], 2);
@@ -211,10 +212,11 @@ TEST(ReliefMaps, ReduceABigReliefByBlockMeansAndSaySo) {
   EXPECT_EQ(relief["pitch_y_um"], 4.0);
   const std::vector<float> heights_um = decoded(relief["heights"]["float32"]);
   ASSERT_EQ(heights_um.size(), 512U);
-  EXPECT_EQ(heights_um[0], 0.0F);
+  EXPECT_EQ(heights_um[0], 1.0F);
   EXPECT_TRUE(std::isnan(heights_um[1]));
-  for (std::size_t k = 2; k < 512; ++k) ASSERT_EQ(heights_um[k], static_cast<float>(4 * k + 1));
-  EXPECT_DOUBLE_EQ(relief["missing_share"].get<double>(), 7.0 / 2048.0);
+  EXPECT_TRUE(std::isnan(heights_um[2]));
+  for (std::size_t k = 3; k < 512; ++k) ASSERT_EQ(heights_um[k], static_cast<float>(4 * k + 1));
+  EXPECT_DOUBLE_EQ(relief["missing_share"].get<double>(), 9.0 / 2048.0);
 }
 
 TEST(Table, RefusesARowOfAnotherLength) {

@@ -16,7 +16,7 @@ namespace mezzotint {
 namespace {
 
 StudyPoint point(const std::string& method, double seconds, double error) {
-  StudyPoint made{{"gaussian", 0.3, 0.0}, method};
+  StudyPoint made{{method}, {"gaussian", 0.3, 0.0}};
   made.seconds = seconds;
   made.error = error;
   return made;

@@ -71,5 +71,15 @@ TEST(HeightField, IsPeriodicAfterACropOnlyWhereItIsWhole) {
   EXPECT_FALSE(crop(field, 0, 0, 2, 1).periodic());
 }
 
+TEST(HeightField, HasARootMeanSquareAboutItsMeanWithoutWhatIsMissing) {
+  HeightField field({2, 2, 1.0_um, 1.0_um}, Continuation::Mirrored);
+  field.at(0, 0) = 7.0F;
+  field.at(1, 0) = 3.0F;
+  field.at(0, 1) = field.at(1, 1) = std::nanf("");
+  EXPECT_EQ(root_mean_square_height(field).um(), 2.0);
+  field.at(0, 0) = field.at(1, 0) = std::nanf("");
+  EXPECT_THROW((void)root_mean_square_height(field), InvalidInput);
+}
+
 }  // namespace
 }  // namespace mezzotint

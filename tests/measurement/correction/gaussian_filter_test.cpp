@@ -94,6 +94,16 @@ TEST(GaussianFilter, IsItsDefinitionEverywhereAlsoWhereTilesMeet) {
     }
 }
 
+// Windows of more than 128 samples go by Fourier transforms: 130 reaches 156 of them.
+TEST(GaussianFilter, IsItsDefinitionForLongCutoffsToo) {
+  HeightField field = test::white_noise(test::micrometre_grid(700, 40), 5);
+  for (std::size_t c = 480; c < 560; ++c) field.at(c, 20) = field.at(c - 300, 3) = test::missing;
+  const HeightField passed = s_filter(field, Length::from_um(130.0));
+  for (const std::size_t column : {0U, 200U, 511U, 512U, 699U})
+    for (const std::size_t row : {0U, 19U, 39U})
+      EXPECT_NEAR(passed.at(column, row), by_definition(field, 130.0, column, row), 1e-6) << column << ' ' << row;
+}
+
 TEST(GaussianFilter, OfACutoffFarBeyondTheFieldIsItsPlane) {
   const HeightField field = field_of(test::micrometre_grid(30, 20), [](double c, double r) {
     return 0.5 * c + (static_cast<int>(c + r) % 2 == 0 ? 1.0 : -1.0);

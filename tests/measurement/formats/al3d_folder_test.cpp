@@ -67,6 +67,21 @@ TEST(Al3dFolder, AThresholdWithoutAFittingMapIsRefused) {
   EXPECT_NE(complaint(folder / "scan.gwy", {.min_quality = 1}).find("has no quality map"), std::string::npos);
 }
 
+TEST(Al3dFolder, TellsTheQualityOfItsSamplesWhereItHasAMap) {
+  const test::TemporaryFolder folder;
+  write_file(folder / "dem.al3d", small_al3d());
+  const SurfaceFile surface = read_surface(folder.path());
+  EXPECT_FALSE(sample_quality(folder.path(), surface).has_value());
+  write_file(folder / "qualitymap.bmp", build_bmp(3, 2, {255, 99, 100, 255, 7, 255}));
+  for (const auto& path : {folder.path(), folder / "dem.al3d"}) {
+    const auto quality = sample_quality(path, surface);
+    ASSERT_TRUE(quality.has_value());
+    EXPECT_EQ(quality->lowest, 7);
+    EXPECT_EQ(quality->median, 255);  // the fourth of 7 99 100 255 255 255
+    EXPECT_EQ(quality->highest, 255);
+  }
+}
+
 TEST(QualityMap, ReadsPalettesBottomUpAndTopDownAndColoursThatAreGray) {
   std::string bmp = build_bmp(3, 2, {1, 2, 3, 4, 5, 6});
   EXPECT_EQ(parse_quality_map("q.bmp", as_bytes(bmp)).gray, (std::vector<std::uint8_t>{1, 2, 3, 4, 5, 6}));

@@ -171,6 +171,13 @@ TEST(HostileFiles, APromiseCostsNoMemory) {
   EXPECT_EQ(outcome_of(fuzzed::sdf, test::build_text_sdf("aISO-1.0", 30000, 30000, 7, "1 2")), Outcome::Refused);
   EXPECT_EQ(outcome_of(fuzzed::png, test::build_png(30000, 30000, 16, {})), Outcome::Refused);
   EXPECT_EQ(outcome_of(fuzzed::tiff, test::build_tiff({30000, 30000, 16, false, false, {1.0}})), Outcome::Refused);
+  // Six pixels, packed (tag 259: LZW, which keeps libtiff from looking), in strips of 1.3·10^9 rows (tag 278).
+  std::string strips = test::build_tiff({3, 2, 32, false, true, {1.0, 2.0, 3.0, 4.0, 5.0, 6.0}});
+  const std::size_t rows_a_strip = strips.find(std::string("\x16\x01\x04\0\x01\0\0\0\x02\0\0\0", 12));
+  ASSERT_NE(rows_a_strip, std::string::npos);
+  strips[rows_a_strip + 11] = '\x4F';
+  strips[strips.find(std::string("\x03\x01\x03\0\x01\0\0\0\x01", 9)) + 8] = '\x05';
+  EXPECT_EQ(outcome_of(fuzzed::tiff, strips), Outcome::Refused);
   EXPECT_EQ(outcome_of(fuzzed::exr, test::build_exr(30000, 30000, {})), Outcome::Refused);
   std::string diagonal;
   for (int i = 0; i < 20000; i += 400) diagonal += std::to_string(i) + " " + std::to_string(i) + " 0\n1 1 0\n";

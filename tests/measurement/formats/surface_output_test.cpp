@@ -191,5 +191,29 @@ TEST(SurfaceOutput, AFullDiskLeavesNothingHalfAndTheOldFileWhole) {
   }
 }
 
+TEST(SurfaceOutput, KnowsHowFarHeightsMayBeOff) {
+  const test::TemporaryFolder folder;
+  for (const bool with_missing : {false, true}) {
+    const HeightField field = awkward_field(0.0, with_missing, Continuation::Periodic);
+    for (const char* ending : {".gwy", ".x3p", ".exr", ".al3d", ".sur", ".png"}) {
+      const auto path = folder.path() / (std::string("copy") + ending);
+      write_surface({field, "", "", {}, ""}, path);
+      const HeightField read = read_surface(path).field;
+      EXPECT_EQ(read.periodic(), keeps_period(path)) << ending;
+      double worst = 0.0;
+      for (std::size_t i = 0; i < field.grid().size(); ++i)
+        if (!std::isnan(field.heights_um()[i]))
+          worst = std::max(worst,
+                           std::abs(double{read.heights_um()[i]} + read.datum().um() - double{field.heights_um()[i]}));
+      const double stated = rounding_of(field, path)->um();
+      EXPECT_LE(worst, stated + 2.5e-7) << ending;  // a float of up to 4 µm, about the mean that reading takes out
+      if (std::string(ending) == ".png") {
+        EXPECT_GT(worst, 0.5 * stated);  // of 850 heights some lie near half a step
+      }
+    }
+    EXPECT_FALSE(rounding_of(field, folder / "mesh.obj").has_value());
+  }
+}
+
 }  // namespace
 }  // namespace mezzotint

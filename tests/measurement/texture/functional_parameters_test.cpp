@@ -53,8 +53,11 @@ TEST(FunctionalParameters, OfUniformHeightsAreTheClosedForm) {
 
 TEST(FunctionalParameters, OfGaussianHeightsAreTheClosedForm) {
   const FunctionalParameters p = functional_parameters(field_with(gaussian_quantile));
-  // The flattest 40 % lie about the median: the line falls 2·z(0.3)/0.4 = 2.62200 over the whole range.
-  const double sk = 2.0 * gaussian_quantile(0.3) / 0.4, edge = 0.5 * sk;
+  // The flattest 40 % lie about the median, |z| < c = z(0.3). The line of least squares there falls by
+  // ∫ z (Φ − ½) φ dz / (2·0.2³/3) = (erf(c)/(2√π) − 0.4 φ(c)) / (2·0.2³/3) = 2.57398; the secant falls by 2.622.
+  const double c = gaussian_quantile(0.3), phi_c = std::exp(-0.5 * c * c) / std::sqrt(2.0 * std::numbers::pi);
+  const double sk = (std::erf(c) / std::sqrt(4.0 * std::numbers::pi) - 0.4 * phi_c) / (2.0 * 0.008 / 3.0);
+  const double edge = 0.5 * sk;
   const double above = 0.5 * std::erfc(edge / std::numbers::sqrt2);
   const double density = std::exp(-0.5 * edge * edge) / std::sqrt(2.0 * std::numbers::pi);
   const double spk = 2.0 * (density - edge * above) / above;  // E(z − edge; z > edge) = φ − edge·Q
@@ -92,6 +95,42 @@ TEST(BearingCurve, GoesFromTheHighestToTheLowest) {
   EXPECT_EQ(curve.ratio(1.0), 1.0);
   EXPECT_NEAR(curve.integral_um(0.0, 1.0), 2.5, 1e-15);  // the mean
   EXPECT_THROW(BearingCurve(std::vector<float>{1.0F, 2.0F, 3.0F}), InvalidInput);
+}
+
+// Of so many samples the curve is counted, not sorted. Two levels with a gap between them are no less sharp for it.
+TEST(BearingCurve, OfManySamplesIsTheSortedOneToABinOfItsRange) {
+  const HeightField noise = test::white_noise(test::micrometre_grid(512, 400), 4);
+  HeightField field = noise;
+  for (std::size_t i = 0; i < field.grid().size(); i += 3) field.heights_um()[i] += 20.0F;
+  const BearingCurve counted(field), sorted({field.heights_um().begin(), field.heights_um().end()});
+  const HeightRange range = height_range(field);
+  const double bin_um = (range.highest - range.lowest).um() / 65536.0;
+  for (double p = 0.0005; p < 1.0; p += 0.001) {
+    // Where the sorted curve steps from one height to the next, half a step of ratio is what the two may be apart.
+    const double half = 0.5 / static_cast<double>(field.grid().size());
+    EXPECT_LE(counted.height_um(p), sorted.height_um(p - 2.0 * half) + bin_um) << p;
+    EXPECT_GE(counted.height_um(p), sorted.height_um(p + 2.0 * half) - bin_um) << p;
+    EXPECT_NEAR(counted.integral_um(0.0, p), sorted.integral_um(0.0, p), bin_um) << p;
+  }
+  for (const double z : {-2.0, 0.0, 1.0, 10.0, 19.0, 21.5})
+    EXPECT_NEAR(counted.ratio(z), sorted.ratio(z), 2e-5) << z;  // four samples of 204800
+}
+
+TEST(FunctionalParameters, OfManySamplesAreThoseOfTheSortedCurve) {
+  // The same heights eleven times over: counted, while the single field is sorted.
+  const HeightField one = field_with(gaussian_quantile);
+  HeightField many(test::micrometre_grid(128, 128 * 11), Continuation::Mirrored);
+  for (std::size_t i = 0; i < many.grid().size(); ++i) many.heights_um()[i] = one.heights_um()[i % one.grid().size()];
+  const FunctionalParameters a = functional_parameters(one), b = functional_parameters(many);
+  // Bins of 1/65536 of 8 µm; steps at the ends of the sorted curve are wider.
+  EXPECT_NEAR(a.Sk.value, b.Sk.value, 3e-4);
+  // Half a step of ratio at an end, over the 2.7 µm beyond the line and twice over its share of 0.095: 1.7e-3.
+  EXPECT_NEAR(a.Spk.value, b.Spk.value, 1.7e-3);
+  EXPECT_NEAR(a.Svk.value, b.Svk.value, 1.7e-3);
+  EXPECT_NEAR(a.Smr1.value, b.Smr1.value, 2e-4);
+  EXPECT_NEAR(a.Vmp.value, b.Vmp.value, 1e-4);
+  EXPECT_NEAR(a.Vvv.value, b.Vvv.value, 1e-4);
+  EXPECT_NEAR(a.Sxp.value, b.Sxp.value, 1e-3);
 }
 
 }  // namespace

@@ -64,6 +64,32 @@ TEST(MeanLine, PassesHalfOfAWaveAsLongAsItsCutoffAndAnyTilt) {
   }
 }
 
+TEST(ProfileParameters, AnElementThatAGapInterruptsDoesNotCount) {
+  Profile profile = wave_of(3.0, 20.0, 2000);
+  // Gaps of an eighth of a wave, every 13 waves: an element across one would be 20 µm too long or too short.
+  for (std::size_t k = 0; k < 2000; ++k)
+    if (k % 531 < 5) profile.heights_um[k] = std::nan("");
+  const ProfileParameters p = profile_parameters(profile);
+  EXPECT_NEAR(p.sm.value, 20.0, 1e-3);  // chords between samples a fortieth of a wave apart
+  EXPECT_LT(*p.sm.standard_error, 1e-3);
+}
+
+TEST(ProfileParameters, HaveStandardErrorsFromTheirSamplingLengths) {
+  double stated = 0.0, sum = 0.0, squares = 0.0;
+  constexpr int draws = 60;
+  for (int i = 0; i < draws; ++i) {
+    const RandomStream random(900 + static_cast<std::uint64_t>(i), RandomPurpose::Test);
+    Profile profile{Length::from_um(1.0), {}};
+    for (std::uint64_t k = 0; k < 2000; ++k) profile.heights_um.push_back(random.normal4(k)[0]);
+    const ProfileParameters r = profile_parameters(profile, {Length{}, Length::from_um(100.0)});
+    stated += std::pow(*r.ku.standard_error, 2) / draws;
+    sum += r.ku.value;
+    squares += r.ku.value * r.ku.value;
+  }
+  // A variance of 60 draws scatters by √(2/59) = 18 %, one of 20 lengths by 32 % (more for fourth powers).
+  EXPECT_NEAR(stated * (draws - 1) / (squares - sum * sum / draws), 1.0, 0.6);
+}
+
 TEST(Profile, FollowsALineInAnyDirection) {
   const HeightField field =
       test::field_of(test::micrometre_grid(60, 40), [](double c, double r) { return 0.5 * c - 0.2 * r; });

@@ -94,6 +94,8 @@ TEST(AreaRoughness, MissingSamplesAreLeftOut) {
   EXPECT_DOUBLE_EQ(result.Sa.value, (2.0 + 1.0 + 0.0 + 1.0 + 4.0) / 5.0);
   EXPECT_DOUBLE_EQ(result.Sq.value, std::sqrt(variance));
   EXPECT_DOUBLE_EQ(result.Sz.value, 6.0);
+  EXPECT_DOUBLE_EQ(result.Sp.value, 4.0);
+  EXPECT_DOUBLE_EQ(result.Sv.value, 2.0);
   EXPECT_DOUBLE_EQ(result.Ssk.value, (-8.0 - 1.0 - 1.0 + 64.0) / 5.0 / std::pow(variance, 1.5));
   EXPECT_DOUBLE_EQ(result.Sku.value, (16.0 + 1.0 + 1.0 + 256.0) / 5.0 / (variance * variance));
   // One whole cell; its triangles have the slopes (1, 5) and (5, 1).

@@ -66,5 +66,5 @@ export function estimate(value, error) {
   return exponent === 0 ? pair : `(${pair})\u2009${power(exponent)}`;
 }
 
-export const quantityText = (q) => withUnit(estimate(q.value, q.standard_error), q.unit);
+export const quantityText = (q) => (isNumber(q.value) ? withUnit(estimate(q.value, q.standard_error), q.unit) : UNKNOWN);
 export const isQuantity = (cell) => typeof cell === 'object' && cell !== null && 'value' in cell;

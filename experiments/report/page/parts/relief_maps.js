@@ -1,8 +1,9 @@
-// Reliefs as pictures, all on one colour scale in µm, with a scale bar and a read-out.
-import { h, segmented } from '../lib/dom.js';
+// Reliefs as pictures, all on one colour scale in µm, with a scale bar and a read-out. Other values over the plane
+// (an autocorrelation) are drawn alike: they have a label, and may have an outline; places then count from the middle.
+import { h, segmented, svg } from '../lib/dom.js';
 import { quantile, values } from '../lib/arrays.js';
 import { indexOf, table } from '../lib/colour.js';
-import { plain } from '../lib/number.js';
+import { plain, withUnit } from '../lib/number.js';
 import { makeScale, niceStep } from '../lib/scale.js';
 import { onThemeChange } from '../lib/theme.js';
 import { colourBar } from './colour_bar.js';
@@ -17,9 +18,9 @@ export function loadRelief(data) {
   return relief;
 }
 
-export function heightScale(reliefs) {
-  const low = Math.min(...reliefs.map((r) => quantile(r.heights, OUTLIERS)));
-  const high = Math.max(...reliefs.map((r) => quantile(r.heights, 1 - OUTLIERS)));
+export function heightScale(reliefs, outliers = OUTLIERS) {
+  const low = Math.min(...reliefs.map((r) => quantile(r.heights, outliers)));
+  const high = Math.max(...reliefs.map((r) => quantile(r.heights, 1 - outliers)));
   return makeScale({ low, high });
 }
 
@@ -64,25 +65,33 @@ function paint(canvas, relief, scale, shaded) {
   canvas.getContext('2d').putImageData(image, 0, 0);
 }
 
+const inUnit = (size, unit) => (unit === 'um' && size >= 1000 ? `${plain(size / 1000, 3)} mm` : withUnit(plain(size, 3), unit));
+
 /// A bar of a round length, near a quarter of the width.
-function scaleBar(relief) {
+function scaleBar(relief, unit) {
   const length = niceStep(relief.width_um / 2, 2.6);
   const share = 100 * length / relief.width_um;
-  const text = length >= 1000 ? `${plain(length / 1000)} mm` : `${plain(length)} µm`;
+  const text = inUnit(length, unit);
   return h('div', { class: 'scale-bar', style: `width:${share.toFixed(2)}%` }, h('span', {}, text));
 }
 
-const metres = (um) => (um >= 1000 ? `${plain(um / 1000, 3)} mm` : `${plain(um, 3)} µm`);
-
-function describe(relief) {
-  const parts = [`${metres(relief.width_um)} × ${metres(relief.depth_um)}`];
+function describe(relief, unit) {
+  const parts = [`${inUnit(relief.width_um, unit)} × ${inUnit(relief.depth_um, unit)}`];
   if (relief.block > 1) parts.push(`shown as means of ${relief.block} × ${relief.block} samples`);
   if (relief.missing_share > 0) parts.push(`${plain(100 * relief.missing_share, 2)} % not seen`);
   return parts.join(' · ');
 }
 
+/// A closed line, µm from the middle, y upward.
+function outline({ outline: points, width_um: w, depth_um: d }) {
+  if (!points) return null;
+  const path = points.map(([x, y], k) => `${k === 0 ? 'M' : 'L'}${(x + w / 2).toFixed(3)} ${(d / 2 - y).toFixed(3)}`).join('');
+  return svg('svg', { viewBox: `0 0 ${w} ${d}`, preserveAspectRatio: 'none', 'aria-hidden': 'true' },
+    svg('path', { class: 'halo', d: `${path}Z` }), svg('path', { d: `${path}Z` }));
+}
+
 function listen(tile) {
-  const { frame, relief, readout, hair } = tile;
+  const { frame, relief, readout, hair, quantity } = tile;
   const show = (u, v) => {
     Object.assign(tile, { u, v });
     const c = Math.min(relief.columns - 1, Math.floor(u * relief.columns));
@@ -90,10 +99,11 @@ function listen(tile) {
     const z = relief.heights[r * relief.columns + c];
     hair.setAttribute('style', `left:${100 * u}%;bottom:${100 * v}%`);
     frame.classList.add('probed');
-    readout.textContent = `x ${plain(u * relief.width_um, 4)}  y ${plain(v * relief.depth_um, 4)}  z ${
-      Number.isNaN(z) ? 'not seen' : `${plain(z, 4)} µm`}`;
+    const x = (u - (quantity.centred ? 0.5 : 0)) * relief.width_um, y = (v - (quantity.centred ? 0.5 : 0)) * relief.depth_um;
+    readout.textContent = `x ${plain(x, 4)}  y ${plain(y, 4)}  ${quantity.symbol} ${
+      Number.isNaN(z) ? 'not seen' : withUnit(plain(z, 4), quantity.unit)}`;
   };
-  const clear = () => { readout.textContent = describe(relief); frame.classList.remove('probed'); };
+  const clear = () => { readout.textContent = describe(relief, quantity.step_unit); frame.classList.remove('probed'); };
   frame.addEventListener('pointermove', (event) => {
     const box = frame.getBoundingClientRect();
     const clamp = (x) => Math.min(0.9999, Math.max(0, x));
@@ -111,37 +121,39 @@ function listen(tile) {
   clear();
 }
 
-function makeTile(relief) {
+function makeTile(relief, quantity) {
   const canvas = h('canvas', { 'aria-hidden': 'true' });
   const hair = h('span', { class: 'hair' });
   const frame = h('div', { class: 'relief', tabindex: '0', role: 'img',
     style: `aspect-ratio:${relief.width_um} / ${relief.depth_um}`,
-    'aria-label': `Height map: ${relief.name}, ${describe(relief)}. Arrow keys move the probe.` },
-  canvas, scaleBar(relief), hair);
+    'aria-label': `${quantity.label} map: ${relief.name}, ${describe(relief, quantity.step_unit)}. Arrow keys move the probe.` },
+  canvas, outline(relief), scaleBar(relief, quantity.step_unit), hair);
   const readout = h('div', { class: 'readout', 'aria-live': 'polite' });
   const element = h('div', { class: 'tile' }, h('div', { class: 'tile-name' }, relief.name), frame, readout);
-  const tile = { relief, canvas, frame, hair, readout, element };
+  const tile = { relief, quantity, canvas, frame, hair, readout, element };
   listen(tile);
   return tile;
 }
 
 export function reliefMaps(data) {
   const reliefs = data.reliefs.map(loadRelief);
-  const tiles = reliefs.map(makeTile);
-  const scale = heightScale(reliefs);
+  const quantity = { label: 'Height', unit: 'um', symbol: 'z', step_unit: 'um', centred: false, ...data.quantity };
+  const tiles = reliefs.map((relief) => makeTile(relief, quantity));
+  const scale = quantity.centred ? heightScale(reliefs, 0) : heightScale(reliefs);
   const bars = h('div', { class: 'bars' });
   let shaded = false;
   const draw = () => {
     for (const tile of tiles) paint(tile.canvas, tile.relief, scale, shaded);
-    bars.replaceChildren(...(shaded ? [] : [colourBar('value', scale, { label: 'Height', unit: 'um' })]));
+    bars.replaceChildren(...(shaded ? [] : [colourBar('value', scale, quantity)]));
   };
-  const choice = segmented('Drawing', [['height', 'Height'], ['shaded', 'Shaded']], 'height',
+  const choice = quantity.centred ? null : segmented('Drawing', [['height', 'Height'], ['shaded', 'Shaded']], 'height',
     (value) => { shaded = value === 'shaded'; draw(); });
   onThemeChange(draw);
   const gaps = reliefs.some((relief) => relief.missing_share > 0);
-  return { element: panel(data, 'maps', { tools: [choice] },
+  return { element: panel(data, 'maps', { tools: choice ? [choice] : [] },
     h('div', { class: 'tiles', 'data-count': tiles.length }, tiles.map((tile) => tile.element)),
     h('div', { class: 'maps-foot' }, bars,
-      gaps ? h('div', { class: 'legend' }, h('span', { class: 'mark-missing' }, 'not seen by the instrument')) : null)),
+      gaps ? h('div', { class: 'legend' }, h('span', { class: 'mark-missing' }, 'not seen by the instrument')) : null,
+      quantity.outline ? h('div', { class: 'legend' }, h('span', { class: 'mark-outline' }, quantity.outline)) : null)),
   start: draw };
 }
