@@ -119,4 +119,20 @@ std::vector<double> FitView::periodogram(const HeightField& field) const {
   return density;
 }
 
+std::vector<double> FitView::audible(const HeightField& field) const {
+  std::vector<double> density = periodogram(field);
+  for (double& value : density) value += quiet_um4_;
+  return density;
+}
+
+void FitView::listen_to(const std::vector<double>& periodogram_um4) {
+  constexpr double quiet = 1e-6;  // of the mean density, weighted by power
+  double power = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    power += blocks_[i].count * periodogram_um4[i];
+    squares += blocks_[i].count * periodogram_um4[i] * periodogram_um4[i];
+  }
+  quiet_um4_ = power > 0.0 ? quiet * squares / power : 0.0;
+}
+
 }  // namespace mezzotint

@@ -35,6 +35,12 @@ public:
   [[nodiscard]] HeightField seen(const HeightField& field) const;
   /// Mean periodogram of each block in µm⁴, of a field as `seen` gives it; holes are filled by Laplace's equation.
   [[nodiscard]] std::vector<double> periodogram(const HeightField& field) const;
+  /// The same with a level added that hides what is too quiet to be a pattern's own: on scan and draws alike, so that
+  /// it is a part of both floors. A pattern sampled finely has most of its frequencies there, where all that is seen is
+  /// how its drawing interpolates and how heights are rounded; unhidden, they would decide the fit.
+  [[nodiscard]] std::vector<double> audible(const HeightField& field) const;
+  /// Sets that level by the scan's own periodogram.
+  void listen_to(const std::vector<double>& periodogram_um4);
 
   /// Of so many frequencies, how many the taper leaves independent.
   static constexpr double independent_share = 1.0 / 1.246;
@@ -46,6 +52,7 @@ private:
   std::vector<std::size_t> missing_;
   std::vector<double> taper_x_, taper_y_;
   std::vector<FrequencyBlock> blocks_;
+  double quiet_um4_ = 0.0;
   std::vector<std::uint32_t> block_of_;  // of each frequency of the spectrum; blocks_.size(): none
 };
 

@@ -43,7 +43,7 @@ void find_white_noise(const FitView& view, const NoiseFit& fit, const NoiseSearc
   std::vector<double> floors(clean_draws);
   tbb::parallel_for(std::size_t{0}, clean_draws, [&](std::size_t i) {
     const HeightField field = drawn(view, fit, 0.0, seed_of_draw(seed, std::size_t{1} << 32U | i));
-    floors[i] = step_towards(fit, spectrum_of(view, view.periodogram(field), search.used)).floor;
+    floors[i] = step_towards(fit, spectrum_of(view, view.audible(field), search.used)).floor;
   });
   double mean = 0.0;
   for (const double floor : floors) mean += floor / clean_draws;
@@ -62,7 +62,7 @@ NoiseDraws draw_noise(const FitView& view, const NoiseFit& fit, const NoiseSearc
     report(progress, "draws", static_cast<double>(done) / static_cast<double>(draws));
     tbb::parallel_for(done, std::min(done + at_once, draws), [&](std::size_t i) {
       const HeightField field = drawn(view, fit, result.white_um4, seed_of_draw(seed, i));
-      const std::vector<double> density = view.periodogram(field);
+      const std::vector<double> density = view.audible(field);
       result.numbers[i] = step_towards(fit, spectrum_of(view, density, search.used));
       result.figures[i] = taker.figures(field, density, result.numbers[i]);
     });

@@ -165,9 +165,10 @@ void conclude(const NoiseSearch& search, const PatternFitOptions& options, const
                                        fmt::join(failed, "; "));
 }
 
-PatternFit fit_noise(const FitView& view, const HeightField& seen, const PatternFitOptions& options,
+PatternFit fit_noise(FitView view, const HeightField& seen, const PatternFitOptions& options,
                      const Progress& progress) {
-  const std::vector<double> density = view.periodogram(seen);
+  view.listen_to(view.periodogram(seen));
+  const std::vector<double> density = view.audible(seen);
   NoiseSearch search = search_noise(view, density, {is_wanted(options, "noise"), is_wanted(options, "fbm")}, progress);
   const auto redraw = [&] {
     const FigureTaker taker(view, search.fits.front(), density, search.used);

@@ -48,7 +48,7 @@ struct PatternFit {
 
 /// draws        reliefs that are synthesized with the fitted pattern and looked at like the scan, 24 … 1000
 /// false_alarm  how often a texture that is such a pattern may be sent away, 1e-6 … 0.5 (docs/physics.md has how
-///              often it was: of noise 3 %, of fBm 6 % where 1 % was asked for)
+///              often it was: of 100 noises none, of 50 fBm two where 1 % was asked for)
 /// kinds        which patterns are tried: "noise", "fbm", "sinusoid", "ridges"; empty: all
 struct PatternFitOptions {
   std::vector<std::string> kinds;
@@ -72,9 +72,8 @@ struct PatternFitOptions {
 /// Units    as the pattern's; lengths as the scan's.
 /// @throws  InvalidInput for fewer than 32 × 32 samples, a flat field, more than half missing, or a patch that holds
 ///          fewer than 8 cells of the noise that fits (2.5 waves of lines), saying how large it should be.
-/// Source   Whittle, Biometrika 41 (1954); bias and intervals by simulation: Gourieroux, Monfort and Renault, J.
-/// Applied
-///          Econometrics 8 (1993).
+/// Source   Whittle, Biometrika 41 (1954); bias and intervals by simulation: Gourieroux, Monfort and Renault, Journal of
+///          Applied Econometrics 8 (1993).
 [[nodiscard]] PatternFit fit_pattern(const HeightField& scan, const PatternFitOptions& options = {},
                                      const Progress& progress = {});
 

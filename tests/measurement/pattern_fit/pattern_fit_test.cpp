@@ -72,6 +72,17 @@ TEST(TextureFit, SeesStretchDirectionAndNoiseOfTheInstrument) {
   EXPECT_NEAR(fit.white_noise.value, 0.6, 5.0 * *fit.white_noise.standard_error);
 }
 
+// Thirty samples a cell: most frequencies hold nothing but how the pattern was drawn, a millionth and less of its
+// power.
+TEST(TextureFit, IsNotMisledByFrequenciesWithoutPower) {
+  const Noise truth{.scale = 60.0_um, .stretch = 2.5, .direction = 30.0_deg, .height = 16.0_um};
+  const PatternFit fit = fit_pattern(synthesize(truth, grid_of(640, 2.0)), {.draws = 24});
+  EXPECT_TRUE(fit.fits) << fit.verdict;
+  EXPECT_EQ(kind_name(fit.pattern), "noise");
+  expect_found(fit, "scale_um", 60.0);
+  expect_found(fit, "height_um", 16.0);
+}
+
 // Noise alone, or of another number of octaves, competes.
 TEST(TextureFit, CountsOctavesAndFindsHurstsExponent) {
   const FractionalBrownianMotion truth{.scale = 40.0_um, .height = 10.0_um, .hurst = 0.4, .octaves = 2, .seed = 9};
