@@ -115,10 +115,10 @@ private:
   [[nodiscard]] std::vector<Contender> filtering() const {
     const Length cutoff = length();
     std::vector<Contender> list = {
-        {"FFT, ends by regression", 0, [=](const HeightField& f) { return s_filter(f, cutoff); }, {}},
-        {"FFT, ends wrapped", 0, [=](const HeightField& f) { return smooth_wrapped(f, cutoff); }, {}}};
+        {"ends by regression", 0, [=](const HeightField& f) { return s_filter(f, cutoff); }, {}},
+        {"ends wrapped", 0, [=](const HeightField& f) { return smooth_wrapped(f, cutoff); }, {}}};
     for (const int tenths : {2, 3, 4, 6, 8, 12})
-      list.push_back({"sums, ends renormalised",
+      list.push_back({"plain sums, ends renormalised",
                       static_cast<std::uint64_t>(tenths),
                       [=](const HeightField& f) { return smooth_by_sums(f, cutoff, 0.1 * tenths); },
                       {}});
@@ -251,7 +251,7 @@ std::string_view in_words(MeasurementQuestion question) {
 const std::vector<std::string>& methods_for(MeasurementQuestion question) {
   static const std::map<MeasurementQuestion, std::vector<std::string>> all = {
       {MeasurementQuestion::Filling, {"plane", "relaxation", "Laplace, solved"}},
-      {MeasurementQuestion::Filtering, {"FFT, ends wrapped", "sums, ends renormalised", "FFT, ends by regression"}},
+      {MeasurementQuestion::Filtering, {"ends wrapped", "plain sums, ends renormalised", "ends by regression"}},
       {MeasurementQuestion::Sampling, {"block of rows", "random samples", "every n-th sample", "all samples"}}};
   return all.at(question);
 }
