@@ -72,8 +72,8 @@ struct PatternFitOptions {
 /// Units    as the pattern's; lengths as the scan's.
 /// @throws  InvalidInput for fewer than 32 × 32 samples, a flat field, more than half missing, or a patch that holds
 ///          fewer than 8 cells of the noise that fits (2.5 waves of lines), saying how large it should be.
-/// Source   Whittle, Biometrika 41 (1954); bias and intervals by simulation: Gourieroux, Monfort and Renault, Journal of
-///          Applied Econometrics 8 (1993).
+/// Source   Whittle, Biometrika 41 (1954); bias and intervals by simulation: Gourieroux, Monfort and Renault,
+///          Journal of Applied Econometrics 8 (1993).
 [[nodiscard]] PatternFit fit_pattern(const HeightField& scan, const PatternFitOptions& options = {},
                                      const Progress& progress = {});
 
