@@ -199,14 +199,19 @@ void add_steps(CLI::App& app) {
 }
 
 // Goes through the options in the order in which they were given.
-void work_through(const CLI::App& app, Correction& correction) {
+void work_through(const CLI::App& app, Correction& correction, const Progress& progress) {
+  std::vector<const CLI::Option*> wanted;
+  for (const CLI::Option* option : app.parse_order())
+    if (steps().contains(option->get_name())) wanted.push_back(option);
   std::map<const CLI::Option*, std::size_t> used;
-  for (const CLI::Option* option : app.parse_order()) {
-    const auto step = steps().find(option->get_name());
-    if (step == steps().end()) continue;
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    const CLI::Option* option = wanted[k];
+    report(progress, "correct", static_cast<double>(k) / static_cast<double>(wanted.size()),
+           option->get_name().substr(2));
     const bool flag = option->get_expected_max() == 0;
-    step->second(correction, flag ? std::string() : option->results().at(used[option]++));
+    steps().at(option->get_name())(correction, flag ? std::string() : option->results().at(used[option]++));
   }
+  report(progress, "correct", 1.0);
 }
 
 }  // namespace
@@ -225,7 +230,7 @@ Command add_correct(CLI::App& program) {
             SurfaceFile surface = arguments->read();
             const std::size_t missing = surface.field.missing_count();
             Correction correction{std::move(surface.field), {}, {}};
-            work_through(*app, correction);
+            work_through(*app, correction, context.progress);
             surface.field = std::move(correction.field);
             std::string words;
             for (const std::string& step : correction.done) words += (words.empty() ? "" : "; ") + step;

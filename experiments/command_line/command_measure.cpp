@@ -95,11 +95,15 @@ Command add_measure(CLI::App& program) {
       ->required();
   add_options(*app, *arguments);
   return {app, [arguments](const CommandContext& context) {
+            report(context.progress, "measure", 0.0, "reading");
             const HeightField relief = relief_of(*arguments);
             const VirtualProfilometer instrument = instrument_of(*arguments, relief, context.common.seed);
+            report(context.progress, "measure", 0.2, "measuring");
             const SurfaceFile scan{
                 measure_virtually(relief, instrument), "", "scan", {{"instrument", in_words(instrument)}}, ""};
+            report(context.progress, "measure", 0.8, "writing");
             write_surface(scan, arguments->output);
+            report(context.progress, "measure", 1.0);
             const HeightField& field = scan.field;
             const std::size_t missing = field.missing_count();
             context.print({{"written", arguments->output},

@@ -87,7 +87,7 @@ Command add_roughness(CLI::App& program) {
             if (!arguments->report.empty()) require_folder_of(arguments->report);
             const SurfaceFile surface = arguments->read();
             const TextureRequest request = request_of(*arguments);
-            const TextureFindings found = texture_of(surface.field, request);
+            const TextureFindings found = texture_of(surface.field, request, context.progress);
             write_page(*arguments, found, request, surface);
             nlohmann::ordered_json json = texture_json(found, request);
             json["assumption"] = surface.assumption;

@@ -94,9 +94,11 @@ double TextureFindings::missing_share() const {
   return static_cast<double>(field.missing_count()) / static_cast<double>(field.grid().size());
 }
 
-TextureFindings texture_of(const HeightField& measured, const TextureRequest& request) {
+TextureFindings texture_of(const HeightField& measured, const TextureRequest& request, const Progress& progress) {
   std::vector<std::string> notes;
+  report(progress, "roughness", 0.0, "levelling and filters");
   HeightField field = prepared(measured, request, notes);
+  report(progress, "roughness", 0.2, "heights and slopes");
   AreaRoughness roughness = area_roughness(field);
   FunctionalParameters functional = functional_parameters(field);
   NormalDistribution normals = normal_distribution(field, normal_bins);
@@ -111,6 +113,7 @@ TextureFindings texture_of(const HeightField& measured, const TextureRequest& re
                         .longest = {},
                         .notes = std::move(notes)};
   if (found.roughness.Sq.value > 0.0 && found.field.columns() >= 16 && found.field.rows() >= 16) {
+    report(progress, "roughness", 0.4, "autocorrelation and spectrum");
     found.autocorrelation = autocorrelation(found.field);
     found.spatial = spatial_parameters(found.field, *found.autocorrelation);
   }
@@ -118,7 +121,9 @@ TextureFindings texture_of(const HeightField& measured, const TextureRequest& re
   found.shortest = Length::from_um(std::max(found.normals.shortest_um, request.s_filter.um()));
   const double longest = found.normals.longest_um, cut = request.l_filter.um();
   found.longest = Length::from_um(cut > 0.0 ? std::min(longest, cut) : longest);
+  report(progress, "roughness", 0.9, "notes");
   add_notes(measured, found, found.notes);
+  report(progress, "roughness", 1.0);
   return found;
 }
 

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "forward/base/progress.h"
 #include "forward/base/quantity.h"
 #include "forward/surface/resample.h"
 #include "measurement/texture/autocorrelation.h"
@@ -59,7 +60,8 @@ struct TextureFindings {
 };
 
 /// @throws InvalidInput as the evaluations do: filters, profiles outside of the field, too few samples.
-[[nodiscard]] TextureFindings texture_of(const HeightField& measured, const TextureRequest& request);
+[[nodiscard]] TextureFindings texture_of(const HeightField& measured, const TextureRequest& request,
+                                         const Progress& progress = {});
 
 /// Areal parameters in the order of the standard, then those of the profile.
 [[nodiscard]] std::vector<TextureParameter> areal_parameters(const TextureFindings& findings);
