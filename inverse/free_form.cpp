@@ -81,14 +81,15 @@ class FreeFormSearch {
 public:
   FreeFormSearch(const SoftGoal& goal, const PrinterProfile& printer, const FreeFormOptions& options,
                  const Progress& progress)
-      : goal_(goal), printer_(printer), options_(options), progress_(progress) {
-    planned_ = 15.0 * options.start_evaluations + static_cast<double>(finalists) * options.evaluations;
-  }
+      : goal_(goal), printer_(printer), options_(options), progress_(progress) {}
 
   FreeForm run() {
     std::vector<Growth> growths;
     const Bench first = bench(0);
-    for (const StartShape& shape : start_shapes(goal_, printer_, options_)) {
+    const std::vector<StartShape> shapes = start_shapes(goal_, printer_, options_);
+    planned_ = 3.0 * static_cast<double>(shapes.size()) * options_.start_evaluations +
+               static_cast<double>(finalists) * options_.evaluations;
+    for (const StartShape& shape : shapes) {
       Growth straight{shape.name, {shape.wanted.heights_um().begin(), shape.wanted.heights_um().end()}, {}, 0.0};
       Growth moved = straight;
       improve(moved, first, LobeDistance::Wasserstein, options_.start_evaluations);
@@ -98,9 +99,13 @@ public:
     }
     std::ranges::stable_sort(growths, {}, &Growth::last);
     growths.resize(finalists);
-    for (Growth& growth : growths) refine(growth);
-    const auto rank = [this](const Growth& growth) { return fresh_distance(growth, choice_draws)[1].value; };
-    return verdict(*std::ranges::min_element(growths, {}, rank));
+    std::vector<double> chosen_by;
+    for (Growth& growth : growths) {
+      refine(growth);
+      const std::vector<FreshDistance> fresh = fresh_distance(growth, choice_draws);
+      chosen_by.push_back(std::ranges::find(fresh, LobeDistance::CubeRoot, &FreshDistance::distance)->value);
+    }
+    return verdict(growths[static_cast<std::size_t>(std::ranges::min_element(chosen_by) - chosen_by.begin())]);
   }
 
 private:

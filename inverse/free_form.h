@@ -33,7 +33,7 @@ struct FreeFormOptions {
   int start_evaluations = 20;  ///< of each of three trials from every start
   int evaluations = 200;       ///< from the best two, on the cube root
   int evaluations_per_epoch = 25;
-  std::size_t fresh_draws = 4;  ///< other grounds and other places of the samples, for the verdict
+  std::size_t fresh_draws = 4;  ///< of the printer's ground, for the choice and again for the verdict
   std::string algorithm = "LD_MMA";
   Length wavelength = Length::from_nm(550.0);
   std::uint64_t seed = 1;
@@ -50,17 +50,20 @@ struct FreeForm {
   GrayImage gray;                    ///< of the tile, rounded to the printer's levels
   std::string start;                 ///< the shape that it grew from, in words
   std::vector<double> history;       ///< cube-root distance of every evaluation from the best start
-  double on_search_draws = 0.0;      ///< cube-root distance in the last epoch, gray levels continuous
+  double on_search_draws = 0.0;      ///< cube-root distance in the last epoch, gray levels continuous, no ground
   std::vector<FreshDistance> fresh;  ///< all distances, on fresh draws, as printed
   int evaluations = 0;
 };
 
 /// Every pixel of a periodic tile a variable: the gray image whose print comes closest to a goal.
 ///
-/// Method   wanted heights between the threshold and the top of the layer → gray → light → cure height → ground →
-///          slopes → soft bins, and back by the adjoint. From several start shapes on the Wasserstein distance, which
-///          sees how far light has to go; then from the best two on the cube root. In every epoch the relief is sampled
-///          at other places (3, 4 or 5 a pixel) and has other grounds, so that nothing can hide between samples.
+/// Method   wanted heights between the threshold and the top of the layer → gray → light → slopes of the cured relief →
+///          soft bins, and back by the adjoint. From each of several start shapes both on the cube root at once and
+///          after the Wasserstein distance, which sees how far light has to go; then from the best two on the cube
+///          root. In every epoch the relief is sampled at other places (3 a pixel and axis), so that nothing can hide
+///          between samples. The printer's ground is met as scatter, its mean over all draws: draws of it would be
+///          learned by heart. The best is chosen and judged by real draws, each its own, with the printer's gray
+///          levels.
 /// @throws InvalidInput for options out of range, or a goal without directions.
 [[nodiscard]] FreeForm find_free_form(const SoftGoal& goal, const PrinterProfile& printer,
                                       const FreeFormOptions& options, const Progress& progress = {});

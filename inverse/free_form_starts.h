@@ -15,7 +15,7 @@ struct StartShape {
 };
 
 /// Noise in two scales, crossed waves, ridges across the longer axis of the goal's first lobe, and a saw that leans
-/// toward its middle: each a periodic tile of one height a pixel, as high as a layer, and as the lobe's own width.
+/// toward its middle: each a periodic tile of one height a pixel, and all but the saw eight tenths of a layer high.
 [[nodiscard]] std::vector<StartShape> start_shapes(const SoftGoal& goal, const PrinterProfile& printer,
                                                    const FreeFormOptions& options);
 

@@ -74,8 +74,10 @@ std::string in_words(const PatternFit& fit) {
     text += fmt::format("{:<16} {:>12.6g}{}{}\n", found.name, found.quantity.value,
                         found.quantity.unit == "1" ? "" : " " + found.quantity.unit, interval_of(found));
   }
-  text += fmt::format("white noise {:.3g} um RMS; {:.1f} cells or waves along the shorter side; {:.2g} % missing\n",
-                      fit.white_noise.value, fit.cells, 100.0 * fit.missing_share);
+  const std::optional<double>& error = fit.white_noise.standard_error;
+  text += fmt::format("white noise {:.3g}{} um RMS; {:.1f} cells or waves along the shorter side; {:.2g} % missing\n",
+                      fit.white_noise.value, error ? fmt::format(" ± {:.2g}", *error) : "", fit.cells,
+                      100.0 * fit.missing_share);
   for (const FitTest& test : fit.tests)
     text += fmt::format("as far off in {} are {:.2g} of such patterns\n", test.name, test.probability);
   for (const FitAlternative& other : fit.alternatives)

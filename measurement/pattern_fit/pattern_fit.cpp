@@ -188,8 +188,9 @@ PatternFit fit_noise(FitView view, const HeightField& seen, const PatternFitOpti
   judge(figures, draws, fit);
   conclude(search, options, view.grid(), fit);
   const double sample = view.grid().pitch_x.um() * view.grid().pitch_y.um();
-  const double rms = std::sqrt(draws.white_um4 / sample);
-  fit.white_noise = {rms, "µm", rms > 0.0 ? 0.5 * draws.white_error_um4 / sample / rms : 0.0};
+  // An error of the square; where that is larger than the square itself, its root is what could have been missed.
+  const double rms = std::sqrt(draws.white_um4 / sample), missed = std::sqrt(draws.white_error_um4 / sample);
+  fit.white_noise = {rms, "µm", rms > missed ? 0.5 * missed * missed / rms : missed};
   fit.cells = shorter_side_um(view.grid()) / cell_size_um(best.numbers).across;
   if (!best.model.stretched) fit.notes.emplace_back("alike in all directions, as far as this patch can tell");
   if (best.model.octaves > 1 && !best.model.free_lacunarity)
