@@ -7,7 +7,7 @@
 
 #include "experiments/configuration/printer_file.h"
 #include "experiments/configuration/suggestion.h"
-#include "inverse/minimize.h"
+#include "inverse/search/minimize.h"
 
 namespace mezzotint {
 

@@ -6,7 +6,7 @@
 
 #include "experiments/configuration/toml_table.h"
 #include "forward/pattern/pattern.h"
-#include "inverse/design.h"
+#include "inverse/design/design.h"
 
 namespace mezzotint {
 

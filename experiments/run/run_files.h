@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "inverse/design.h"
+#include "inverse/design/design.h"
 #include "measurement/comparison/registration.h"
 #include "measurement/texture/roughness.h"
 

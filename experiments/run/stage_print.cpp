@@ -3,7 +3,7 @@
 #include "experiments/run/stages.h"
 #include "fabrication/device/virtual_printer.h"
 #include "fabrication/job/job.h"
-#include "inverse/printed_texture.h"
+#include "inverse/design/printed_texture.h"
 #include "measurement/formats/surface_file.h"
 #include "measurement/instrument/virtual_profilometer.h"
 

@@ -19,8 +19,8 @@
 
 #include "forward/pattern/pattern_parameters.h"
 #include "forward/scattering/path_tracing.h"
-#include "inverse/design.h"
-#include "inverse/free_form.h"
+#include "inverse/design/design.h"
+#include "inverse/free_form/free_form.h"
 
 namespace {
 
@@ -146,7 +146,7 @@ int main(int count, char** arguments) {
     std::printf("%s\n", wanted.name.c_str());
     const double before = cpu_seconds();
     const FreeForm form =
-        find_free_form(soft_goal(bins, material, {straight}, {map}, false), printer, {.pixels = tile_pixels});
+        find_free_form(lobe_target(bins, material, {straight}, {map}, false), printer, {.pixels = tile_pixels});
     const double seconds = cpu_seconds() - before;
     const Errors free = traced(form.gray, Surround::Repeat, printer, map);
     std::printf("  %-10s %4d evaluations, traced: cube root %.3f, L2 %.3f  (from %s, %.1f s of CPU; searched %.3f)\n",

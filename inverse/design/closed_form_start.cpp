@@ -1,4 +1,4 @@
-#include "inverse/closed_form_start.h"
+#include "inverse/design/closed_form_start.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "inverse/free_form.h"
+#include "inverse/free_form/free_form.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,8 +21,8 @@ double square_lobe(const Direction& out) {
   return inside(out.x() + mirror.x()) * inside(out.y() + mirror.y());
 }
 
-SoftGoal square_goal() {
-  return soft_goal(bins, Dielectric{1.5}, light, {average_over_bins(bins, square_lobe, 8)}, true);
+LobeTarget square_goal() {
+  return lobe_target(bins, Dielectric{1.5}, light, {average_over_bins(bins, square_lobe, 8)}, true);
 }
 
 FreeFormOptions small() {
@@ -57,15 +57,15 @@ TEST(FreeForm, GivesTheSameBitsWithAnyNumberOfThreads) {
 
 TEST(FreeForm, AGoalOfAnyBrightnessHasTheLightOfAFlatSurface) {
   const DirectionMap map = average_over_bins(bins, square_lobe, 8);
-  const SoftGoal goal = soft_goal(bins, Dielectric{1.5}, light, {map}, true);
+  const LobeTarget goal = lobe_target(bins, Dielectric{1.5}, light, {map}, true);
   double sum = 0.0;
   for (std::size_t k = 0; k < map.size(); ++k) sum += goal.grid.areas()[k] * goal.maps.front()[k];
   EXPECT_NEAR(sum, reflectance(Dielectric{1.5}, std::cos(light.front().theta.radians())), 1e-12);
 }
 
 TEST(FreeForm, RefusesWhatIsNoGoal) {
-  EXPECT_THROW((void)soft_goal(bins, Mirror{}, light, {DirectionMap(bins.size(), 0.0)}, true), InvalidInput);
-  EXPECT_THROW((void)soft_goal(bins, Mirror{}, light, {}, true), InvalidInput);
+  EXPECT_THROW((void)lobe_target(bins, Mirror{}, light, {DirectionMap(bins.size(), 0.0)}, true), InvalidInput);
+  EXPECT_THROW((void)lobe_target(bins, Mirror{}, light, {}, true), InvalidInput);
   FreeFormOptions options = small();
   options.pixels = 4;
   EXPECT_THROW((void)find_free_form(square_goal(), {}, options), InvalidInput);

@@ -1,15 +1,15 @@
-#include "inverse/free_form.h"
+#include "inverse/free_form/free_form.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include "forward/base/error.h"
 #include "forward/base/random.h"
-#include "inverse/free_form_starts.h"
+#include "inverse/free_form/free_form_starts.h"
+#include "inverse/objective/smooth_lobe.h"
 
 namespace mezzotint {
 
@@ -33,7 +33,7 @@ struct Places {
 // with draws of it, it would learn them by heart.
 class Bench {
 public:
-  Bench(const SoftGoal& goal, const PrinterProfile& printer, std::size_t pixels, Length wavelength,
+  Bench(const LobeTarget& goal, const PrinterProfile& printer, std::size_t pixels, Length wavelength,
         const Places& places)
       : goal_(goal), process_(pixels, pixels, printer, {places.subsamples, Surround::Repeat, places.x, places.y}) {
     const double ground = ground_rms_slope(printer, split_ground(printer, wavelength).geometric);
@@ -63,7 +63,7 @@ public:
   }
 
 private:
-  const SoftGoal& goal_;
+  const LobeTarget& goal_;
   PrintProcess process_;
   std::vector<SmoothLobe> lobes_;
   std::vector<double> variances_;
@@ -79,7 +79,7 @@ struct Growth {
 
 class FreeFormSearch {
 public:
-  FreeFormSearch(const SoftGoal& goal, const PrinterProfile& printer, const FreeFormOptions& options,
+  FreeFormSearch(const LobeTarget& goal, const PrinterProfile& printer, const FreeFormOptions& options,
                  const Progress& progress)
       : goal_(goal), printer_(printer), options_(options), progress_(progress) {}
 
@@ -218,14 +218,14 @@ private:
             .evaluations = static_cast<int>(done_)};
   }
 
-  const SoftGoal& goal_;
+  const LobeTarget& goal_;
   const PrinterProfile& printer_;
   const FreeFormOptions& options_;
   const Progress& progress_;
   double planned_ = 1.0, done_ = 0.0;
 };
 
-void require_valid_options(const SoftGoal& goal, const FreeFormOptions& options) {
+void require_valid_options(const LobeTarget& goal, const FreeFormOptions& options) {
   require(!goal.incidences.empty() && goal.maps.size() == goal.incidences.size(),
           "a free form needs a lobe for each direction of the light, and at least one");
   require(options.pixels >= 16 && options.pixels <= 1024, "a free form has 16 to 1024 pixels a side");
@@ -236,24 +236,7 @@ void require_valid_options(const SoftGoal& goal, const FreeFormOptions& options)
 
 }  // namespace
 
-SoftGoal soft_goal(const DirectionGrid& grid, const Material& material, const std::vector<DirectionAngles>& incidences,
-                   const std::vector<DirectionMap>& maps, bool any_brightness) {
-  require(!incidences.empty() && maps.size() == incidences.size(), "a goal needs one map a direction of the light");
-  SoftGoal goal{SmoothGrid(grid), material, incidences, {}};
-  for (std::size_t i = 0; i < maps.size(); ++i) {
-    DirectionMap soft = goal.grid.softened(maps[i]);
-    const double light = std::inner_product(soft.begin(), soft.end(), goal.grid.areas().begin(), 0.0);
-    require(std::isfinite(light) && light > 0.0, "the lobe that is wanted is dark everywhere");
-    if (any_brightness) {
-      const double mirrored = reflectance(material, std::cos(incidences[i].theta.radians()));
-      for (double& value : soft) value *= mirrored / light;
-    }
-    goal.maps.push_back(std::move(soft));
-  }
-  return goal;
-}
-
-FreeForm find_free_form(const SoftGoal& goal, const PrinterProfile& printer, const FreeFormOptions& options,
+FreeForm find_free_form(const LobeTarget& goal, const PrinterProfile& printer, const FreeFormOptions& options,
                         const Progress& progress) {
   require_valid_options(goal, options);
   return FreeFormSearch(goal, printer, options, progress).run();

@@ -6,27 +6,11 @@
 
 #include "forward/base/progress.h"
 #include "forward/process/print_process.h"
-#include "inverse/minimize.h"
 #include "inverse/objective/lobe_distance.h"
-#include "inverse/objective/smooth_lobe.h"
+#include "inverse/search/minimize.h"
+#include "inverse/target/lobe_target.h"
 
 namespace mezzotint {
-
-/// Lobes that a printed tile should show: reflection maps in soft bins for some directions of the light, by single
-/// reflection without shadows.
-struct SoftGoal {
-  SmoothGrid grid;
-  Material material;
-  std::vector<DirectionAngles> incidences;
-  std::vector<DirectionMap> maps;  ///< one an incidence
-};
-
-/// A goal from maps of hard bins, such as a painted or a measured lobe. With `any_brightness` each map is scaled to the
-/// light that a flat surface of the material would reflect: a painting has no unit.
-/// @throws InvalidInput for maps that do not fit, or that are dark.
-[[nodiscard]] SoftGoal soft_goal(const DirectionGrid& grid, const Material& material,
-                                 const std::vector<DirectionAngles>& incidences, const std::vector<DirectionMap>& maps,
-                                 bool any_brightness);
 
 struct FreeFormOptions {
   std::size_t pixels = 128;    ///< a side of the periodic tile, 16 … 1024
@@ -65,7 +49,7 @@ struct FreeForm {
 ///          learned by heart. The best is chosen and judged by real draws, each its own, with the printer's gray
 ///          levels.
 /// @throws InvalidInput for options out of range, or a goal without directions.
-[[nodiscard]] FreeForm find_free_form(const SoftGoal& goal, const PrinterProfile& printer,
+[[nodiscard]] FreeForm find_free_form(const LobeTarget& goal, const PrinterProfile& printer,
                                       const FreeFormOptions& options, const Progress& progress = {});
 
 }  // namespace mezzotint

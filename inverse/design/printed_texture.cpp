@@ -1,4 +1,4 @@
-#include "inverse/printed_texture.h"
+#include "inverse/design/printed_texture.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "inverse/design.h"
+#include "inverse/design/design.h"
 
 #include <cmath>
 
@@ -6,7 +6,7 @@
 #include <tbb/global_control.h>
 
 #include "forward/base/error.h"
-#include "inverse/closed_form_start.h"
+#include "inverse/design/closed_form_start.h"
 
 namespace mezzotint {
 namespace {

@@ -1,4 +1,4 @@
-#include "inverse/free_form_starts.h"
+#include "inverse/free_form/free_form_starts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ struct LobeAxes {
   double tilt = 0.0;    // slope that sends light from the mirror direction to the lobe's middle
 };
 
-LobeAxes axes_of(const SoftGoal& goal) {
+LobeAxes axes_of(const LobeTarget& goal) {
   const LightMoments moments = light_moments(goal.grid, goal.maps.front());
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(moments.covariance);
   const Eigen::Vector2d longer = solver.eigenvectors().col(1);
@@ -43,7 +43,7 @@ Ridges saw(const LobeAxes& axes, Length height, Length pixel, std::size_t pixels
 
 }  // namespace
 
-std::vector<StartShape> start_shapes(const SoftGoal& goal, const PrinterProfile& printer,
+std::vector<StartShape> start_shapes(const LobeTarget& goal, const PrinterProfile& printer,
                                      const FreeFormOptions& options) {
   const Length pixel = printer.pixel_pitch, height = 0.8 * reachable_height(printer);
   const LobeAxes axes = axes_of(goal);

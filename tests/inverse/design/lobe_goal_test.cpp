@@ -1,4 +1,4 @@
-#include "inverse/lobe_goal.h"
+#include "inverse/design/lobe_goal.h"
 
 #include <cmath>
 
@@ -6,7 +6,7 @@
 
 #include "forward/base/error.h"
 #include "forward/base/random.h"
-#include "inverse/design.h"
+#include "inverse/design/design.h"
 
 namespace mezzotint {
 namespace {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "forward/base/progress.h"
-#include "inverse/lobe_goal.h"
-#include "inverse/minimize.h"
-#include "inverse/printed_texture.h"
-#include "inverse/target.h"
+#include "inverse/design/lobe_goal.h"
+#include "inverse/design/printed_texture.h"
+#include "inverse/search/minimize.h"
+#include "inverse/target/target.h"
 
 namespace mezzotint {
 

@@ -1,4 +1,4 @@
-#include "inverse/minimize.h"
+#include "inverse/search/minimize.h"
 
 #include <algorithm>
 #include <cmath>

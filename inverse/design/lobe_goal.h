@@ -4,7 +4,7 @@
 
 #include "forward/optics/direction_map.h"
 #include "forward/optics/material.h"
-#include "inverse/printed_texture.h"
+#include "inverse/design/printed_texture.h"
 
 namespace mezzotint {
 

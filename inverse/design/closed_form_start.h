@@ -2,7 +2,7 @@
 
 #include "forward/pattern/pattern.h"
 #include "forward/process/printer_profile.h"
-#include "inverse/target.h"
+#include "inverse/target/target.h"
 
 namespace mezzotint {
 

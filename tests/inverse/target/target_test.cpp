@@ -1,4 +1,4 @@
-#include "inverse/target.h"
+#include "inverse/target/target.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "inverse/lobe_goal.h"
+#include "inverse/design/lobe_goal.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "inverse/design.h"
+#include "inverse/design/design.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "forward/base/error.h"
 #include "forward/pattern/octave_sum.h"
 #include "forward/pattern/pattern_parameters.h"
-#include "inverse/closed_form_start.h"
+#include "inverse/design/closed_form_start.h"
 
 namespace mezzotint {
 
