@@ -29,7 +29,21 @@ enum class OwnHeight { Counts, IsNothing };
 
 constexpr int most_levels = 8;
 
-Pattern read_part(TomlTable table, int level, OwnHeight own_height);
+// Where a pattern stands: in what, and what of it may be free.
+struct Place {
+  PatternUse use;
+  int level = 1;
+  OwnHeight own_height = OwnHeight::Counts;
+  std::string path;       // before the names of its numbers
+  std::string_view kind;  // its own, once that is known
+  std::vector<FreeParameter>* free;
+
+  [[nodiscard]] Place below(std::size_t part, OwnHeight height) const {
+    return {use, level + 1, height, path + part_name(kind, part) + ".", {}, free};
+  }
+};
+
+Pattern read_part(TomlTable table, const Place& place);
 
 void read_randomness(TomlTable& table, Pattern& pattern, PatternUse use) {
   auto random = randomness(pattern);
@@ -54,42 +68,44 @@ void read_singularities(TomlTable& table, LineIntegralConvolution& lines) {
   }
 }
 
-std::vector<PatternPart> read_parts(TomlTable& table, int level, OwnHeight own_height, std::size_t least) {
-  std::vector<TomlTable> tables = table.tables("parts");
+using Parts = std::vector<PatternPart>;
+
+void read_list(TomlTable& table, Parts& parts, const Place& place, OwnHeight own_height) {
+  constexpr std::size_t least = 2;
+  const std::vector<TomlTable> tables = table.tables("parts");
   if (tables.size() < least) {
     table.complain("parts",
                    fmt::format("this kind needs {} parts or more, like parts = [{{ kind = \"noise\" }}, {{ kind = "
                                "\"ridges\" }}]",
                                least));
   }
-  std::vector<PatternPart> parts;
-  for (TomlTable& part : tables) parts.push_back({read_part(part, level + 1, own_height)});
-  return parts;
+  for (const TomlTable& part : tables) parts.push_back({read_part(part, place.below(parts.size(), own_height))});
 }
 
-PatternPart read_named_part(TomlTable& table, std::string_view key, int level, OwnHeight own_height) {
+void read_named(TomlTable& table, Parts& parts, const Place& place, OwnHeight own_height) {
+  const std::string key = part_name(place.kind, parts.size());
   if (!table.has(key))
     table.complain(key, fmt::format("\"{}\" is missing; it is a pattern, like {{ kind = \"noise\" }}", key));
-  return {read_part(table.table(key), level + 1, own_height)};
+  parts.push_back({read_part(table.table(key), place.below(parts.size(), own_height))});
 }
 
 template <typename Kind>
-void read_parts_of(TomlTable&, Kind&, int, OwnHeight) {}
-void read_parts_of(TomlTable& table, PatternSum& sum, int level, OwnHeight) {
-  sum.parts = read_parts(table, level, OwnHeight::Counts, 2);
+void read_parts_of(TomlTable&, Kind&, const Place&) {}
+void read_parts_of(TomlTable& table, PatternSum& sum, const Place& place) {
+  read_list(table, sum.parts, place, OwnHeight::Counts);
 }
-void read_parts_of(TomlTable& table, PatternProduct& product, int level, OwnHeight) {
-  product.parts = read_parts(table, level, OwnHeight::IsNothing, 2);
+void read_parts_of(TomlTable& table, PatternProduct& product, const Place& place) {
+  read_list(table, product.parts, place, OwnHeight::IsNothing);
 }
-void read_parts_of(TomlTable& table, TurnedPattern& turned, int level, OwnHeight own_height) {
-  turned.parts = {read_named_part(table, "part", level, own_height)};
+void read_parts_of(TomlTable& table, TurnedPattern& turned, const Place& place) {
+  read_named(table, turned.parts, place, place.own_height);
 }
-void read_parts_of(TomlTable& table, MaskedPattern& masked, int level, OwnHeight) {
-  masked.parts = {read_named_part(table, "inside", level, OwnHeight::Counts),
-                  read_named_part(table, "outside", level, OwnHeight::Counts),
-                  read_named_part(table, "mask", level, OwnHeight::IsNothing)};
+void read_parts_of(TomlTable& table, MaskedPattern& masked, const Place& place) {
+  for (const OwnHeight height : {OwnHeight::Counts, OwnHeight::Counts, OwnHeight::IsNothing}) {
+    read_named(table, masked.parts, place, height);
+  }
 }
-void read_parts_of(TomlTable& table, PatternRegions& regions, int level, OwnHeight) {
+void read_parts_of(TomlTable& table, PatternRegions& regions, const Place& place) {
   try {
     read_label_image(table.file("labels"), regions);
   } catch (const FileError& error) {
@@ -98,23 +114,37 @@ void read_parts_of(TomlTable& table, PatternRegions& regions, int level, OwnHeig
   std::vector<TomlTable> tables = table.tables("parts");
   for (TomlTable& part : tables) {
     const auto label = static_cast<int>(part.integer("label", 0, 255));
-    regions.parts.push_back({read_part(part, level + 1, OwnHeight::Counts), label});
+    regions.parts.push_back({read_part(part, place.below(regions.parts.size(), OwnHeight::Counts)), label});
   }
   if (tables.empty()) table.complain("parts", "regions need parts, like parts = [{ label = 255, kind = \"noise\" }]");
 }
 
-void set_checked(TomlTable& table, Pattern& pattern, const PatternParameter& parameter, double value) {
-  if (parameter.whole && value != std::round(value)) {
-    table.complain(parameter.name, fmt::format("\"{}\" must be a whole number, not {:g}", parameter.name, value));
+void read_parameter(TomlTable& table, Pattern& pattern, const PatternParameter& parameter, const Place& place) {
+  const std::string& name = parameter.name;
+  if (name == "height_um" && place.own_height == OwnHeight::IsNothing) {
+    table.complain(name, "a factor or a mask counts by its shape alone, from 0 to 1, and has no \"height_um\"");
   }
-  set_parameter(pattern, parameter.name, value);
+  const NumberOrFree value = table.number_or_free(name, {parameter.lowest, parameter.highest});
+  if (value.fixed) {
+    if (parameter.whole && *value.fixed != std::round(*value.fixed)) {
+      table.complain(name, fmt::format("\"{}\" must be a whole number, not {:g}", name, *value.fixed));
+    }
+    set_parameter(pattern, name, *value.fixed);
+  } else if (place.use == PatternUse::Synthesis) {
+    table.complain(name, fmt::format("\"{}\" is free, but synthesize searches nothing; give it a value", name));
+  } else if (parameter.whole) {
+    table.complain(name, fmt::format("\"{}\" is a whole number, which a search cannot change; give it a value", name));
+  } else {
+    place.free->push_back({place.path + name, value.low, value.high, value.start});
+  }
 }
 
 // What is more than numbers: draws, singularities, parts.
-void read_rest(TomlTable& table, Pattern& pattern, PatternUse use, int level, OwnHeight own_height) {
-  read_randomness(table, pattern, use);
+void read_rest(TomlTable& table, Pattern& pattern, Place place) {
+  place.kind = kind_name(pattern);
+  read_randomness(table, pattern, place.use);
   if (auto* lines = std::get_if<LineIntegralConvolution>(&pattern)) read_singularities(table, *lines);
-  std::visit([&](auto& kind) { read_parts_of(table, kind, level, own_height); }, pattern);
+  std::visit([&](auto& kind) { read_parts_of(table, kind, place); }, pattern);
   try {
     require_valid(pattern);
   } catch (const InvalidInput& error) {
@@ -123,21 +153,15 @@ void read_rest(TomlTable& table, Pattern& pattern, PatternUse use, int level, Ow
   table.finish();
 }
 
-// A pattern within another: nothing of it is free.
-Pattern read_part(TomlTable table, int level, OwnHeight own_height) {
-  if (level > most_levels) {
+Pattern read_part(TomlTable table, const Place& place) {
+  if (place.level > most_levels) {
     table.complain("kind", fmt::format("patterns stand within patterns more than {} levels deep", most_levels));
   }
   Pattern pattern = default_pattern(table.choice("kind", kinds(), "noise"));
   for (const auto& parameter : pattern_parameters(pattern)) {
-    if (!table.has(parameter.name)) continue;
-    if (parameter.name == "height_um" && own_height == OwnHeight::IsNothing) {
-      table.complain("height_um",
-                     "a factor or a mask counts by its shape alone, from 0 to 1, and has no \"height_um\"");
-    }
-    set_checked(table, pattern, parameter, table.number(parameter.name, {parameter.lowest, parameter.highest}));
+    if (table.has(parameter.name)) read_parameter(table, pattern, parameter, place);
   }
-  read_rest(table, pattern, PatternUse::Synthesis, level, own_height);
+  read_rest(table, pattern, place);
   return pattern;
 }
 
@@ -158,27 +182,7 @@ PatternSpecification read_pattern(TomlTable table, bool table_is_there, PatternU
   if (!table_is_there) return default_specification();
   PatternSpecification result;
   if (!table.has("kind")) result.reason = default_specification().reason;
-  result.pattern = default_pattern(table.choice("kind", kinds(), "noise"));
-  if (use == PatternUse::Search && parts_of(result.pattern) != nullptr) {
-    table.complain("kind",
-                   fmt::format("a composed pattern (\"{}\") cannot be searched yet; search one of its parts, or "
-                               "use mezzotint synthesize",
-                               kind_name(result.pattern)));
-  }
-  for (const auto& parameter : pattern_parameters(result.pattern)) {
-    if (!table.has(parameter.name)) continue;
-    const NumberOrFree value = table.number_or_free(parameter.name, {parameter.lowest, parameter.highest});
-    if (value.fixed) {
-      set_checked(table, result.pattern, parameter, *value.fixed);
-    } else if (parameter.whole) {
-      table.complain(
-          parameter.name,
-          fmt::format("\"{}\" is a whole number, which a search cannot change; give it a value", parameter.name));
-    } else {
-      result.free.push_back({std::string(parameter.name), value.low, value.high, value.start});
-    }
-  }
-  read_rest(table, result.pattern, use, 1, OwnHeight::Counts);
+  result.pattern = read_part(std::move(table), {.use = use, .free = &result.free});
   return result;
 }
 
@@ -186,12 +190,7 @@ PatternFile read_pattern_file(const std::filesystem::path& path, const std::vect
   const TomlFile file(path, settings);
   TomlTable root(file);
   if (!root.has("pattern")) root.complain("pattern", "a pattern file needs a [pattern] table");
-  PatternSpecification specification = read_pattern(root.table("pattern"), true, PatternUse::Synthesis);
-  if (!specification.free.empty()) {
-    root.complain("pattern", "\"" + specification.free.front().name +
-                                 "\" is free, but synthesize searches nothing; give it a value");
-  }
-  PatternFile result{specification.pattern, {}};
+  PatternFile result{read_pattern(root.table("pattern"), true, PatternUse::Synthesis).pattern, {}};
   read_grid(root.table("grid"), result);
   root.finish();
   return result;

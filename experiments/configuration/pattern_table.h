@@ -20,9 +20,11 @@ struct PatternSpecification {
 /// A search draws the seeds of its patterns itself (`[search] seed`); a pattern to synthesize has one of its own.
 enum class PatternUse { Search, Synthesis };
 
-/// Reads a `[pattern]` table, with the parts of a composition, which a search refuses. Where the table or its kind is
-/// left out, stretched noise is taken, and `reason` says why; a parameter that is left out of an experiment keeps its
-/// default and is not free, unless the whole table is left out: then all that matter are.
+/// Reads a `[pattern]` table, with the parts of a composition. Where the table or its kind is left out, stretched noise
+/// is taken, and `reason` says why; a parameter that is left out of an experiment keeps its default and is not free,
+/// unless the whole table is left out: then all that matter are. What is free in a part has its path before its name
+/// (all_parameters).
+/// @throws ConfigurationError for a whole number that is free, and for any that is where nothing is searched.
 [[nodiscard]] PatternSpecification read_pattern(TomlTable table, bool table_is_there, PatternUse use);
 
 /// A pattern and the grid to evaluate it on: the file of `mezzotint synthesize`.
@@ -31,7 +33,7 @@ struct PatternFile {
   Grid grid;
   Continuation continuation = Continuation::Mirrored;
 };
-/// @throws ConfigurationError; free parameters are refused, there is nothing to search.
+/// @throws ConfigurationError
 [[nodiscard]] PatternFile read_pattern_file(const std::filesystem::path& path,
                                             const std::vector<std::string>& settings = {});
 

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "forward/base/error.h"
+#include "forward/pattern/pattern_tree.h"
 
 namespace mezzotint {
 
@@ -15,12 +16,12 @@ namespace {
 
 constexpr double largest_length_um = 1e5;
 
-PatternParameter length(std::string_view name) { return {name, 0.1, largest_length_um, true}; }
+PatternParameter length(std::string name) { return {std::move(name), 0.1, largest_length_um, true}; }
 PatternParameter direction() { return {"direction_deg", -360.0, 360.0, false}; }
 PatternParameter height() { return {"height_um", 1e-3, 1e4, true}; }
 PatternParameter stretch() { return {"stretch", 1.0, 64.0, true}; }
-PatternParameter place(std::string_view name) { return {name, -1e6, 1e6, false}; }
-PatternParameter whole(std::string_view name, double low, double high) { return {name, low, high, false, true}; }
+PatternParameter place(std::string name) { return {std::move(name), -1e6, 1e6, false}; }
+PatternParameter whole(std::string name, double low, double high) { return {std::move(name), low, high, false, true}; }
 
 using Table = std::vector<PatternParameter>;
 
@@ -104,13 +105,86 @@ Slots slots(TurnedPattern& p) { return {{.angle = &p.rotation}, {.length = &p.ce
 Slots slots(MaskedPattern& p) { return {{.number = &p.threshold}, {.number = &p.softness}}; }
 Slots slots(PatternRegions& p) { return {{.length = &p.pixel}, {.length = &p.corner.x}, {.length = &p.corner.y}}; }
 
-Slot slot(Pattern& pattern, std::string_view name) {
+// For a message: a pattern's own numbers, and its parts.
+std::string what_it_has(const Pattern& pattern) {
+  constexpr std::size_t most_named = 16;
+  std::vector<std::string> names;
+  for (const PatternParameter& parameter : pattern_parameters(pattern)) names.push_back(parameter.name);
+  const auto* parts = parts_of(pattern);
+  for (std::size_t i = 0; parts != nullptr && i < parts->size() && names.size() < most_named; ++i) {
+    names.push_back(part_name(kind_name(pattern), i) + ".…");
+  }
+  return names.empty() ? "nothing yet" : fmt::format("{}", fmt::join(names, ", "));
+}
+
+[[noreturn]] void complain(const Pattern& pattern, std::string_view name) {
+  throw InvalidInput(
+      fmt::format("a pattern of kind \"{}\" has no \"{}\"; it has {}", kind_name(pattern), name, what_it_has(pattern)));
+}
+
+// Which of a simple or composed pattern's own numbers has that name.
+std::size_t index_of(const Pattern& pattern, std::string_view name) {
   const Table& table = pattern_parameters(pattern);
   const auto found = std::ranges::find(table, name, &PatternParameter::name);
-  require(found != table.end(),
-          "a pattern of kind \"" + std::string(kind_name(pattern)) + "\" has no \"" + std::string(name) + "\"");
-  const auto index = static_cast<std::size_t>(found - table.begin());
-  return std::visit([&](auto& kind) { return slots(kind)[index]; }, pattern);
+  if (found == table.end()) complain(pattern, name);
+  return static_cast<std::size_t>(found - table.begin());
+}
+
+std::size_t index_of_part(const Pattern& pattern, std::string_view name) {
+  const auto* parts = parts_of(pattern);
+  for (std::size_t i = 0; parts != nullptr && i < parts->size(); ++i) {
+    if (part_name(kind_name(pattern), i) == name) return i;
+  }
+  complain(pattern, name);
+}
+
+struct Path {
+  std::string_view part;  ///< empty: the number is the pattern's own
+  std::string_view rest;
+};
+Path split(std::string_view path) {
+  const std::size_t point = path.find('.');
+  if (point == std::string_view::npos) return {{}, path};
+  return {path.substr(0, point), path.substr(point + 1)};
+}
+
+// The pattern in a composition that has the number, and what that calls it.
+struct Found {
+  const Pattern& pattern;
+  std::string_view name;
+};
+Found follow(const Pattern& pattern, std::string_view path) {
+  const auto [part, rest] = split(path);
+  if (part.empty()) return {pattern, path};
+  return follow((*parts_of(pattern))[index_of_part(pattern, part)].pattern, rest);
+}
+
+Pattern& part_at(Pattern& pattern, std::size_t index) {
+  return std::visit(
+      [&]<typename Kind>(Kind& kind) -> Pattern& {
+        if constexpr (Composed<Kind>) return kind.parts.at(index).pattern;
+        return pattern;
+      },
+      pattern);
+}
+
+bool counts_by_shape(const Pattern& pattern, std::size_t part, bool itself) {
+  if (std::holds_alternative<PatternProduct>(pattern)) return true;
+  if (std::holds_alternative<MaskedPattern>(pattern)) return part == 2;
+  return std::holds_alternative<TurnedPattern>(pattern) && itself;
+}
+
+void add_parameters(const Pattern& pattern, const std::string& path, bool by_shape, Table& into) {
+  for (const PatternParameter& own : pattern_parameters(pattern)) {
+    if (by_shape && own.name == "height_um") continue;
+    into.push_back(own);
+    into.back().name = path + own.name;
+  }
+  const auto* parts = parts_of(pattern);
+  for (std::size_t i = 0; parts != nullptr && i < parts->size(); ++i) {
+    add_parameters((*parts)[i].pattern, path + part_name(kind_name(pattern), i) + ".",
+                   counts_by_shape(pattern, i, by_shape), into);
+  }
 }
 
 }  // namespace
@@ -135,11 +209,46 @@ Pattern default_pattern(std::string_view kind) {
 
 const std::vector<PatternParameter>& pattern_parameters(const Pattern& pattern) { return tables().at(pattern.index()); }
 
-double get_parameter(const Pattern& pattern, std::string_view name) {
-  Pattern copy = pattern;
-  return slot(copy, name).read();
+std::string part_name(std::string_view kind, std::size_t index) {
+  if (kind == "rotate") return "part";
+  if (kind != "mask") return fmt::format("parts[{}]", index);
+  static const std::array<const char*, 3> names = {"inside", "outside", "mask"};
+  return names.at(index);
 }
 
-void set_parameter(Pattern& pattern, std::string_view name, double value) { slot(pattern, name).write(value); }
+std::vector<PatternParameter> all_parameters(const Pattern& pattern) {
+  Table all;
+  add_parameters(pattern, "", false, all);
+  return all;
+}
+
+PatternParameter find_parameter(const Pattern& pattern, std::string_view path) {
+  const Table all = all_parameters(pattern);
+  const auto found = std::ranges::find(all, path, &PatternParameter::name);
+  if (found != all.end()) return *found;
+  const Found at = follow(pattern, path);
+  (void)index_of(at.pattern, at.name);
+  throw InvalidInput(fmt::format("\"{}\" means nothing: a factor or a mask counts by its shape alone", path));
+}
+
+std::string_view last_name(std::string_view path) {
+  const std::size_t point = path.rfind('.');
+  return point == std::string_view::npos ? path : path.substr(point + 1);
+}
+
+double get_parameter(const Pattern& pattern, std::string_view path) {
+  const Found at = follow(pattern, path);
+  const std::size_t index = index_of(at.pattern, at.name);
+  return std::visit([index](auto kind) { return slots(kind)[index].read(); }, at.pattern);
+}
+
+void set_parameter(Pattern& pattern, std::string_view path, double value) {
+  if (const auto [part, rest] = split(path); !part.empty()) {
+    set_parameter(part_at(pattern, index_of_part(pattern, part)), rest, value);
+    return;
+  }
+  const std::size_t index = index_of(pattern, path);
+  std::visit([&](auto& kind) { slots(kind)[index].write(value); }, pattern);
+}
 
 }  // namespace mezzotint

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "experiments/configuration/experiment_file.h"
+#include "forward/pattern/pattern_parameters.h"
 #include "tests/test_data.h"
 
 namespace mezzotint {
@@ -74,7 +75,7 @@ TEST_F(PatternFileOf, ACompositionSaysWhereItIsWrong) {
   expect_complaint(complaint_of_part("{ kind = \"noise\", ptich = 1.0 }"), "4:", "unknown key \"ptich\"");
   expect_complaint(complaint_of_part("{ kind = \"noise\", stretch = nan }"), "4:", "out of range");
   expect_complaint(complaint_of_part("{ kind = \"noise\", scale_um = { free = [30.0, 90.0] } }"),
-                   "4:", "must be a number");
+                   "4:", "searches nothing; give it a value");
   expect_complaint(complaint_of_part("{ kind = \"product\" }"), "4:1", "2 parts or more");
   expect_complaint(complaint_of_part("{ kind = \"rotate\", rotation_deg = 3.0 }"), "4:1", "\"part\" is missing");
   expect_complaint(complaint_of_part("{ kind = \"mask\", inside = {}, outside = {} }"), "4:1", "\"mask\" is missing");
@@ -136,12 +137,48 @@ TEST_F(PatternFileOf, ASearchRefusesWhatItCannotChange) {
     }
     return "no complaint";
   };
-  EXPECT_NE(search("[pattern]\nkind = \"sum\"\n").find("cannot be searched yet"), std::string::npos);
+  const std::string sum = "[pattern]\nkind = \"sum\"\nparts = [{ kind = \"ridges\" }, { ";
+  EXPECT_NE(search(sum + "seed = 5 }]\n").find("its seed is that of [search]"), std::string::npos);
+  EXPECT_NE(search(sum + "kind = \"fbm\", octaves = { free = [2, 5] } }]\n").find("a search cannot change"),
+            std::string::npos);
+  EXPECT_NE(search(sum + "}]\n").find("no parameter of the pattern is free"), std::string::npos);
   EXPECT_NE(search("[pattern]\nkind = \"fbm\"\noctaves = { free = [2, 5] }\n").find("a search cannot change"),
             std::string::npos);
   for (const std::string kind : {"noise", "fbm", "turbulence", "line_integral_convolution"}) {
     EXPECT_EQ(search("[pattern]\nkind = \"" + kind + "\"\nscale_um = { free = [30.2, 400.0] }\n"), "no complaint");
   }
+}
+
+TEST_F(PatternFileOf, WhatIsFreeInAPartHasItsPath) {
+  std::ofstream(folder_ / "run.toml") << R"([target]
+kind = "beckmann"
+alpha_x = 0.2
+alpha_y = 0.1
+[pattern]
+kind = "product"
+height_um = { free = [4.0, 17.0] }
+[[pattern.parts]]
+kind = "rotate"
+rotation_deg = { free = [-90.0, 90.0], start = 5.0 }
+part = { kind = "ridges", skew = { free = [0.3, 0.7] } }
+[[pattern.parts]]
+kind = "mask"
+inside = { scale_um = { free = [40.0, 90.0] }, height_um = 3.0 }
+outside = {}
+mask = { kind = "sinusoid", wavelength_u_um = { free = [200.0, 900.0] } }
+)";
+  const PatternSpecification read = read_experiment(folder_ / "run.toml").pattern;
+  std::vector<std::string> names;
+  for (const FreeParameter& free : read.free) {
+    names.push_back(free.name);
+    const PatternParameter entry = find_parameter(read.pattern, free.name);
+    EXPECT_GE(free.low, entry.lowest) << free.name;
+  }
+  const std::vector<std::string> expected = {"height_um", "parts[0].rotation_deg", "parts[0].part.skew",
+                                             "parts[1].inside.scale_um", "parts[1].mask.wavelength_u_um"};
+  EXPECT_EQ(names, expected);
+  EXPECT_EQ(read.free[1].start, 5.0);
+  EXPECT_EQ(get_parameter(read.pattern, "parts[1].inside.height_um"), 3.0);
 }
 
 }  // namespace

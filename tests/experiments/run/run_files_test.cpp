@@ -37,8 +37,14 @@ TEST(RunFiles, GiveBackEveryPatternThatCanBeSearched) {
   LineIntegralConvolution lines{.length = 123.4_um, .seed = 5, .hash = CellHash::Slides};
   lines.singularities = {{{1.5_um, -2.5_um}, -0.5}, {{}, 1.0}};
   const FractionalBrownianMotion motion{.hurst = 0.3, .octaves = 7, .seed = 6};
+  PatternRegions regions{
+      .pixel = 20.0_um, .columns = 2, .rows = 3, .labels = {7, 7, 7, 200, 200, 7}, .source = "a.png"};
+  regions.parts = {{motion, 7}, {Ridges{}, 200}};
+  const Pattern turned = TurnedPattern{25.0_deg, {3.0_um, 4.0_um}, {{lines}}};
   for (const Pattern& pattern :
-       {Pattern{motion}, Pattern{Turbulence{.octaves = 2}}, Pattern{lines}, Pattern{Sinusoid{}}, Pattern{Ridges{}}}) {
+       {Pattern{motion}, Pattern{Turbulence{.octaves = 2}}, Pattern{lines}, Pattern{Sinusoid{}}, Pattern{Ridges{}},
+        Pattern{PatternSum{{{turned}, {regions}}}}, Pattern{PatternProduct{9.0_um, {{motion}, {Ridges{}}}}},
+        Pattern{MaskedPattern{.softness = 0.3, .parts = {{motion}, {Ridges{}}, {Noise{}}}}}}) {
     Design design = some_design();
     design.pattern = pattern;
     const Design read = design_from_json(nlohmann::ordered_json::parse(to_json(design).dump()));
