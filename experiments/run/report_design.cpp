@@ -20,6 +20,7 @@ std::string unit_of(std::string_view parameter) {
 nlohmann::json parameter_table(const RunResults& results) {
   std::vector<TableRow> rows;
   for (const auto& parameter : all_parameters(results.design.pattern)) {
+    if (parameter.drawn) continue;
     const std::string& name = parameter.name;
     const Quantity value{get_parameter(results.design.pattern, name), unit_of(name), {}};
     const auto found = std::ranges::find(results.design.variables, name, &Variable::name);
