@@ -10,6 +10,8 @@
 #include <array>
 #include <cmath>
 
+#include <hwy/aligned_allocator.h>
+
 HWY_BEFORE_NAMESPACE();
 namespace mezzotint::HWY_NAMESPACE {
 
@@ -28,23 +30,31 @@ using Indices = hn::RebindToSigned<Doubles>;
 using Vector = hn::Vec<Doubles>;
 using Index = hn::Vec<Indices>;
 
-Vector number(double value) { return hn::Set(Doubles(), value); }
+HWY_INLINE Vector number(double value) { return hn::Set(Doubles(), value); }
+
+// 1/√x: in single precision, then by one step of Newton's method to 3e-14; 0 beyond what a float holds.
+HWY_INLINE Vector inverse_root(Vector x) {
+  const Floats f;
+  const auto root = hn::Div(hn::Set(f, 1.0F), hn::Sqrt(hn::DemoteTo(f, x)));
+  const Vector guess = hn::PromoteTo(Doubles(), root);
+  const Vector off = hn::Mul(hn::Mul(hn::Mul(number(0.5), x), guess), guess);
+  return hn::Mul(guess, hn::Sub(number(1.5), off));
+}
 
 // A facet with slopes p, q as the light meets it: s = n·(ω_i·m), k = 2 s/n², and whether it sends light upward.
 struct Facet {
-  Vector p, q, inverse_square, s, k;
+  Vector p, q, inverse_n, s, k;
   hn::Mask<Doubles> lit;
 };
-Facet facet_at(const LobePlan& plan, const float* slopes_x, const float* slopes_y) {
+HWY_INLINE Facet facet_at(const LobePlan& plan, const float* slopes_x, const float* slopes_y) {
   const Doubles d;
   const Vector p = hn::PromoteTo(d, hn::LoadU(Floats(), slopes_x));
   const Vector q = hn::PromoteTo(d, hn::LoadU(Floats(), slopes_y));
-  const Vector square = hn::Add(hn::Add(number(1.0), hn::Mul(p, p)), hn::Mul(q, q));
-  const Vector inverse_square = hn::Div(number(1.0), square);
+  const Vector n = inverse_root(hn::Add(hn::Add(number(1.0), hn::Mul(p, p)), hn::Mul(q, q)));
   const Vector s = hn::Sub(hn::Sub(number(plan.to_light_z), hn::Mul(p, number(plan.to_light_x))),
                            hn::Mul(q, number(plan.to_light_y)));
-  const Vector k = hn::Mul(hn::Mul(number(2.0), s), inverse_square);
-  return {p, q, inverse_square, s, k, hn::And(hn::Gt(s, hn::Zero(d)), hn::Gt(k, number(plan.to_light_z)))};
+  const Vector k = hn::Mul(hn::Mul(number(2.0), s), hn::Mul(n, n));
+  return {p, q, n, s, k, hn::And(hn::Gt(s, hn::Zero(d)), hn::Gt(k, number(plan.to_light_z)))};
 }
 
 // Value and slope of a curve, at x within 0 and 1.
@@ -52,7 +62,7 @@ struct CurvePoint {
   Vector value, slope;
 };
 template <bool with_slope>
-CurvePoint on_curve(const CurveCells& curve, Vector x) {
+HWY_INLINE CurvePoint on_curve(const CurveCells& curve, Vector x) {
   const Doubles d;
   const Indices indices;
   const auto steps = static_cast<std::int32_t>(curve.steps);
@@ -77,7 +87,7 @@ struct Place {
   hn::Vec<Integers> bin;
   Vector t;
 };
-Place place_of(Vector way, std::size_t bins) {
+HWY_INLINE Place place_of(Vector way, std::size_t bins) {
   const Doubles d;
   const Vector coordinate = hn::Mul(number(0.5 * static_cast<double>(bins)), hn::Add(way, number(1.0)));
   const auto last = hn::Set(Integers(), static_cast<std::int32_t>(bins) - 1);
@@ -89,7 +99,7 @@ Place place_of(Vector way, std::size_t bins) {
 struct Shares {
   Vector before, middle, after, slope_before, slope_middle, slope_after;
 };
-Shares shares_of(Vector t) {
+HWY_INLINE Shares shares_of(Vector t) {
   const Vector half = number(0.5), low = hn::Sub(half, t), high = hn::Add(half, t);
   return {hn::Mul(half, hn::Mul(low, low)),   hn::Sub(number(0.75), hn::Mul(t, t)),
           hn::Mul(half, hn::Mul(high, high)), hn::Neg(low),
@@ -100,27 +110,56 @@ Shares shares_of(Vector t) {
 struct Way {
   Vector x, y;
 };
-Way way_of(const LobePlan& plan, const Facet& facet) {
+HWY_INLINE Way way_of(const LobePlan& plan, const Facet& facet) {
   const auto along = [&](Vector slope, double to_light) {
     return hn::IfThenElseZero(facet.lit, hn::Sub(hn::Neg(hn::Mul(facet.k, slope)), number(to_light)));
   };
   return {along(facet.p, plan.to_light_x), along(facet.q, plan.to_light_y)};
 }
 
-Vector cosine_of(const Facet& facet) {
-  const Vector cosine = hn::Mul(facet.s, hn::Sqrt(facet.inverse_square));
+HWY_INLINE Vector cosine_of(const Facet& facet) {
+  const Vector cosine = hn::Mul(facet.s, facet.inverse_n);
   return hn::IfThenElseZero(facet.lit, hn::Min(number(1.0), cosine));
 }
 
-// The light of a chunk: the shares along x, those along y times the weight, and the first bin of the nine.
+// Bins that are added to four at a time, in one copy for each remainder of the first bin's column by four: what
+// neighbouring facets add to overlaps wholly or not at all, so that the processor need not wait for the one before.
+struct Banks {
+  static constexpr std::size_t width = 4;
+
+  std::size_t stride, size;
+  hwy::AlignedFreeUniquePtr<double[]> light;
+
+  explicit Banks(const LobePlan& plan)
+      : stride((plan.bins_x + width - 1) / width * width),
+        size(stride * (plan.bins_y + 2)),
+        light(hwy::AllocateAligned<double>(width * size)) {
+    std::fill_n(light.get(), width * size, 0.0);
+  }
+  void add_to(const LobePlan& plan, double* framed_light) const {
+    for (std::size_t bank = 0; bank < width; ++bank) {
+      const std::size_t columns = std::min(stride, plan.framed_stride() - bank);
+      for (std::size_t row = 0; row < plan.bins_y + 2; ++row) {
+        const double* const from = light.get() + bank * size + row * stride;
+        double* const to = framed_light + row * plan.framed_stride() + bank;
+        for (std::size_t column = 0; column < columns; ++column) to[column] += from[column];
+      }
+    }
+  }
+};
+
+// The light of a chunk: four shares along x (the last is 0), those along y times the weight, and the first bin.
 struct Sent {
-  HWY_ALIGN std::array<double, chunk> x0, x1, x2, y0, y1, y2;
+  HWY_ALIGN std::array<double, Banks::width * chunk> x;
+  HWY_ALIGN std::array<double, chunk> y0, y1, y2;
   HWY_ALIGN std::array<std::int32_t, chunk> corner;
 };
 
-void send(const LobePlan& plan, const FacetSlopes& slopes, Sent& sent) {
+void send(const LobePlan& plan, const Banks& banks, const FacetSlopes& slopes, Sent& sent) {
   const Doubles d;
-  const auto stride = hn::Set(Integers(), static_cast<std::int32_t>(plan.framed_stride()));
+  const Integers integers;
+  const auto stride = hn::Set(integers, static_cast<std::int32_t>(banks.stride)),
+             to_next_bank = hn::Set(integers, static_cast<std::int32_t>(banks.size) - 1);
   const Vector by_cosine = number(1.0 / plan.to_light_z);
   for (std::size_t i = 0; i < slopes.count; i += hn::Lanes(d)) {
     const Facet facet = facet_at(plan, slopes.x + i, slopes.y + i);
@@ -129,32 +168,31 @@ void send(const LobePlan& plan, const FacetSlopes& slopes, Sent& sent) {
     const Way way = way_of(plan, facet);
     const Place u = place_of(way.x, plan.bins_x), v = place_of(way.y, plan.bins_y);
     const Shares along_x = shares_of(u.t), along_y = shares_of(v.t);
-    hn::StoreU(along_x.before, d, sent.x0.data() + i);
-    hn::StoreU(along_x.middle, d, sent.x1.data() + i);
-    hn::StoreU(along_x.after, d, sent.x2.data() + i);
+    hn::StoreInterleaved4(along_x.before, along_x.middle, along_x.after, hn::Zero(d), d,
+                          sent.x.data() + Banks::width * i);
     hn::StoreU(hn::Mul(weight, along_y.before), d, sent.y0.data() + i);
     hn::StoreU(hn::Mul(weight, along_y.middle), d, sent.y1.data() + i);
     hn::StoreU(hn::Mul(weight, along_y.after), d, sent.y2.data() + i);
-    hn::StoreU(hn::Add(hn::Mul(v.bin, stride), u.bin), Integers(), sent.corner.data() + i);
+    const auto bank = hn::And(u.bin, hn::Set(integers, Banks::width - 1));
+    const auto corner = hn::Add(hn::Add(hn::Mul(v.bin, stride), u.bin), hn::Mul(bank, to_next_bank));
+    hn::StoreU(corner, integers, sent.corner.data() + i);
   }
 }
 
-void receive(const Sent& sent, std::size_t count, std::size_t stride, double* light) {
+void receive(const Sent& sent, std::size_t count, const Banks& banks) {
+  const hn::CappedTag<double, Banks::width> d;
+  const auto add_line = [&](double* line, const double* shares, double weight) {
+    const auto factor = hn::Set(d, weight);
+    for (std::size_t k = 0; k < Banks::width; k += hn::Lanes(d))
+      hn::Store(hn::Add(hn::Load(d, line + k), hn::Mul(factor, hn::Load(d, shares + k))), d, line + k);
+  };
+  double* const light = banks.light.get();
   for (std::size_t i = 0; i < count; ++i) {
-    double* const low = light + sent.corner[i];
-    double* const middle = low + stride;
-    double* const high = middle + stride;
-    const double x0 = sent.x0[i], x1 = sent.x1[i], x2 = sent.x2[i];
-    const double y0 = sent.y0[i], y1 = sent.y1[i], y2 = sent.y2[i];
-    low[0] += y0 * x0;
-    low[1] += y0 * x1;
-    low[2] += y0 * x2;
-    middle[0] += y1 * x0;
-    middle[1] += y1 * x1;
-    middle[2] += y1 * x2;
-    high[0] += y2 * x0;
-    high[1] += y2 * x1;
-    high[2] += y2 * x2;
+    double* const line = light + sent.corner[i];
+    const double* const shares = sent.x.data() + Banks::width * i;
+    add_line(line, shares, sent.y0[i]);
+    add_line(line + banks.stride, shares, sent.y1[i]);
+    add_line(line + 2 * banks.stride, shares, sent.y2[i]);
   }
 }
 
@@ -162,7 +200,7 @@ void receive(const Sent& sent, std::size_t count, std::size_t stride, double* li
 struct BinPoint {
   Vector value, along_x, along_y;
 };
-BinPoint between_bins(const double* framed, std::size_t stride, const Place& u, const Place& v) {
+HWY_INLINE BinPoint between_bins(const double* framed, std::size_t stride, const Place& u, const Place& v) {
   const Doubles d;
   const auto wide = hn::Set(Integers(), static_cast<std::int32_t>(stride));
   const Index corner = hn::PromoteTo(Indices(), hn::Add(hn::Mul(v.bin, wide), u.bin));
@@ -186,9 +224,10 @@ BinPoint between_bins(const double* framed, std::size_t stride, const Place& u, 
 }
 
 // One slope of the weight: (F' ∂cosine s − F ω_i)/cosθ_i, with ∂cosine = −(ω_i + s p/n²)/n.
-Vector weight_slope(const Facet& facet, const CurvePoint& fresnel, Vector along, Vector to_light) {
-  const Vector turn = hn::Add(to_light, hn::Mul(hn::Mul(facet.s, along), facet.inverse_square));
-  const Vector by_cosine = hn::Mul(hn::Mul(turn, hn::Sqrt(facet.inverse_square)), hn::Mul(fresnel.slope, facet.s));
+HWY_INLINE Vector weight_slope(const Facet& facet, const CurvePoint& fresnel, Vector along, Vector to_light) {
+  const Vector inverse_square = hn::Mul(facet.inverse_n, facet.inverse_n);
+  const Vector turn = hn::Add(to_light, hn::Mul(hn::Mul(facet.s, along), inverse_square));
+  const Vector by_cosine = hn::Mul(hn::Mul(turn, facet.inverse_n), hn::Mul(fresnel.slope, facet.s));
   return hn::Neg(hn::Add(by_cosine, hn::Mul(fresnel.value, to_light)));
 }
 
@@ -208,8 +247,8 @@ void derive(const LobePlan& plan, const FacetSlopes& slopes, const double* frame
     const Vector toward_u = hn::Mul(weight, hn::Mul(at.along_x, half_x)),
                  toward_v = hn::Mul(weight, hn::Mul(at.along_y, half_y));
     // ω_o = −k (p, q) − ω_i: toward p by 2/n² (ω_i,x + k p) (p, q) − (k, 0).
-    const Vector along =
-        hn::Mul(hn::Mul(two, facet.inverse_square), hn::Add(hn::Mul(facet.p, toward_u), hn::Mul(facet.q, toward_v)));
+    const Vector along = hn::Mul(hn::Mul(two, hn::Mul(facet.inverse_n, facet.inverse_n)),
+                                 hn::Add(hn::Mul(facet.p, toward_u), hn::Mul(facet.q, toward_v)));
     const auto total = [&](Vector slope, Vector to_light, Vector toward) {
       const Vector moved =
           hn::Sub(hn::Mul(hn::Add(to_light, hn::Mul(facet.k, slope)), along), hn::Mul(facet.k, toward));
@@ -251,11 +290,13 @@ bool finite(const float* values, std::size_t count) {
 }
 
 void add_light(const LobePlan& plan, const FacetSlopes& slopes, double* framed_light) {
+  const Banks banks(plan);
   Sent sent;
   for_each_chunk(slopes, [&](std::size_t, const FacetSlopes& some) {
-    send(plan, some, sent);
-    receive(sent, some.count, plan.framed_stride(), framed_light);
+    send(plan, banks, some, sent);
+    receive(sent, some.count, banks);
   });
+  banks.add_to(plan, framed_light);
 }
 
 void add_derivatives(const LobePlan& plan, const FacetSlopes& slopes, const double* framed_values, float* toward_x,
