@@ -41,10 +41,10 @@ HWY_INLINE Vector inverse_root(Vector x) {
   return hn::Mul(guess, hn::Sub(number(1.5), off));
 }
 
-// A facet with slopes p, q as the light meets it: s = n·(ω_i·m), k = 2 s/n², and whether it sends light upward.
+// A facet with slopes p, q as the light meets it: s = n·(ω_i·m) and k = 2 s/n², both 0 where it is turned away from the
+// light or sends it downward.
 struct Facet {
   Vector p, q, inverse_n, s, k;
-  hn::Mask<Doubles> lit;
 };
 HWY_INLINE Facet facet_at(const LobePlan& plan, const float* slopes_x, const float* slopes_y) {
   const Doubles d;
@@ -54,22 +54,22 @@ HWY_INLINE Facet facet_at(const LobePlan& plan, const float* slopes_x, const flo
   const Vector s = hn::Sub(hn::Sub(number(plan.to_light_z), hn::Mul(p, number(plan.to_light_x))),
                            hn::Mul(q, number(plan.to_light_y)));
   const Vector k = hn::Mul(hn::Mul(number(2.0), s), hn::Mul(n, n));
-  return {p, q, n, s, k, hn::And(hn::Gt(s, hn::Zero(d)), hn::Gt(k, number(plan.to_light_z)))};
+  const auto lit = hn::Gt(k, number(plan.to_light_z));  // s is positive then
+  return {p, q, n, hn::IfThenElseZero(lit, s), hn::IfThenElseZero(lit, k)};
 }
 
-// Value and slope of a curve, at x within 0 and 1.
+// Value and slope of a curve, at x from 0 to 1 and a rounding more.
 struct CurvePoint {
   Vector value, slope;
 };
 template <bool with_slope>
 HWY_INLINE CurvePoint on_curve(const CurveCells& curve, Vector x) {
   const Doubles d;
-  const Indices indices;
-  const auto steps = static_cast<std::int32_t>(curve.steps);
+  const auto steps = static_cast<double>(curve.steps);
   const Vector at = hn::Mul(x, number(steps));
-  const auto cell = hn::Min(hn::DemoteTo(Integers(), at), hn::Set(Integers(), steps - 1));
+  const auto cell = hn::DemoteTo(Integers(), at);
   const Vector t = hn::Sub(at, hn::PromoteTo(d, cell));
-  const Index first = hn::ShiftLeft<2>(hn::PromoteTo(indices, cell));
+  const Index first = hn::ShiftLeft<2>(hn::PromoteTo(Indices(), cell));
   const double* const terms = curve.terms.data();
   const Vector a = hn::GatherIndex(d, terms, first), b = hn::GatherIndex(d, terms + 1, first),
                c = hn::GatherIndex(d, terms + 2, first), e = hn::GatherIndex(d, terms + 3, first);
@@ -82,44 +82,32 @@ HWY_INLINE CurvePoint on_curve(const CurveCells& curve, Vector x) {
   return point;
 }
 
-// The nearest bin along one axis, and how far from its middle.
+// The nearest bin along one axis, and how far from its lower edge.
 struct Place {
   hn::Vec<Integers> bin;
-  Vector t;
+  Vector within;
 };
-HWY_INLINE Place place_of(Vector way, std::size_t bins) {
-  const Doubles d;
-  const Vector coordinate = hn::Mul(number(0.5 * static_cast<double>(bins)), hn::Add(way, number(1.0)));
+// Of −k·slope − ω_i, from −1 to 1: what is below by a rounding is cut to the first bin by the conversion.
+HWY_INLINE Place place_of(Vector k, Vector slope, double to_light, std::size_t bins) {
+  const double half = 0.5 * static_cast<double>(bins);
+  const Vector coordinate = hn::Sub(number(half * (1.0 - to_light)), hn::Mul(hn::Mul(k, number(half)), slope));
   const auto last = hn::Set(Integers(), static_cast<std::int32_t>(bins) - 1);
-  const auto bin = hn::Max(hn::Zero(Integers()), hn::Min(hn::DemoteTo(Integers(), coordinate), last));
-  return {bin, hn::Sub(hn::Sub(coordinate, hn::PromoteTo(d, bin)), number(0.5))};
+  const auto bin = hn::Min(hn::DemoteTo(Integers(), coordinate), last);
+  return {bin, hn::Sub(coordinate, hn::PromoteTo(Doubles(), bin))};
 }
 
 // The shares of three bins and their slopes, as soft_bins.
 struct Shares {
   Vector before, middle, after, slope_before, slope_middle, slope_after;
 };
-HWY_INLINE Shares shares_of(Vector t) {
-  const Vector half = number(0.5), low = hn::Sub(half, t), high = hn::Add(half, t);
-  return {hn::Mul(half, hn::Mul(low, low)),   hn::Sub(number(0.75), hn::Mul(t, t)),
-          hn::Mul(half, hn::Mul(high, high)), hn::Neg(low),
-          hn::Mul(number(-2.0), t),           high};
-}
-
-// Where light goes that a facet does not send upward: to the middle, with no weight.
-struct Way {
-  Vector x, y;
-};
-HWY_INLINE Way way_of(const LobePlan& plan, const Facet& facet) {
-  const auto along = [&](Vector slope, double to_light) {
-    return hn::IfThenElseZero(facet.lit, hn::Sub(hn::Neg(hn::Mul(facet.k, slope)), number(to_light)));
-  };
-  return {along(facet.p, plan.to_light_x), along(facet.q, plan.to_light_y)};
-}
-
-HWY_INLINE Vector cosine_of(const Facet& facet) {
-  const Vector cosine = hn::Mul(facet.s, facet.inverse_n);
-  return hn::IfThenElseZero(facet.lit, hn::Min(number(1.0), cosine));
+HWY_INLINE Shares shares_of(Vector within) {
+  const Vector half = number(0.5), low = hn::Sub(number(1.0), within), t = hn::Sub(within, half);
+  return {hn::Mul(half, hn::Mul(low, low)),
+          hn::Sub(number(0.75), hn::Mul(t, t)),
+          hn::Mul(half, hn::Mul(within, within)),
+          hn::Neg(low),
+          hn::Mul(number(-2.0), t),
+          within};
 }
 
 // Bins that are added to four at a time, in one copy for each remainder of the first bin's column by four: what
@@ -163,19 +151,19 @@ void send(const LobePlan& plan, const Banks& banks, const FacetSlopes& slopes, S
   const Vector by_cosine = number(1.0 / plan.to_light_z);
   for (std::size_t i = 0; i < slopes.count; i += hn::Lanes(d)) {
     const Facet facet = facet_at(plan, slopes.x + i, slopes.y + i);
-    const Vector fresnel = on_curve<false>(plan.reflectance, cosine_of(facet)).value;
-    const Vector weight = hn::IfThenElseZero(facet.lit, hn::Mul(hn::Mul(fresnel, facet.s), by_cosine));
-    const Way way = way_of(plan, facet);
-    const Place u = place_of(way.x, plan.bins_x), v = place_of(way.y, plan.bins_y);
-    const Shares along_x = shares_of(u.t), along_y = shares_of(v.t);
+    const Vector fresnel = on_curve<false>(plan.reflectance, hn::Mul(facet.s, facet.inverse_n)).value;
+    const Vector weight = hn::Mul(hn::Mul(fresnel, facet.s), by_cosine);
+    const Place u = place_of(facet.k, facet.p, plan.to_light_x, plan.bins_x);
+    const Place v = place_of(facet.k, facet.q, plan.to_light_y, plan.bins_y);
+    const Shares along_x = shares_of(u.within), along_y = shares_of(v.within);
     hn::StoreInterleaved4(along_x.before, along_x.middle, along_x.after, hn::Zero(d), d,
                           sent.x.data() + Banks::width * i);
     hn::StoreU(hn::Mul(weight, along_y.before), d, sent.y0.data() + i);
     hn::StoreU(hn::Mul(weight, along_y.middle), d, sent.y1.data() + i);
     hn::StoreU(hn::Mul(weight, along_y.after), d, sent.y2.data() + i);
-    const auto bank = hn::And(u.bin, hn::Set(integers, Banks::width - 1));
-    const auto corner = hn::Add(hn::Add(hn::Mul(v.bin, stride), u.bin), hn::Mul(bank, to_next_bank));
-    hn::StoreU(corner, integers, sent.corner.data() + i);
+    const auto corner = hn::Add(hn::Mul(v.bin, stride), u.bin);
+    const auto bank = hn::And(corner, hn::Set(integers, Banks::width - 1));
+    hn::StoreU(hn::Add(corner, hn::Mul(bank, to_next_bank)), integers, sent.corner.data() + i);
   }
 }
 
@@ -204,7 +192,7 @@ HWY_INLINE BinPoint between_bins(const double* framed, std::size_t stride, const
   const Doubles d;
   const auto wide = hn::Set(Integers(), static_cast<std::int32_t>(stride));
   const Index corner = hn::PromoteTo(Indices(), hn::Add(hn::Mul(v.bin, wide), u.bin));
-  const Shares x = shares_of(u.t), y = shares_of(v.t);
+  const Shares x = shares_of(u.within), y = shares_of(v.within);
   BinPoint point{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
   const auto add_line = [&](const double* line, Vector share, Vector slope) {
     const Vector before = hn::GatherIndex(d, line, corner), middle = hn::GatherIndex(d, line + 1, corner),
@@ -239,10 +227,12 @@ void derive(const LobePlan& plan, const FacetSlopes& slopes, const double* frame
                half_y = number(0.5 * static_cast<double>(plan.bins_y)), two = number(2.0);
   for (std::size_t i = 0; i < slopes.count; i += hn::Lanes(d)) {
     const Facet facet = facet_at(plan, slopes.x + i, slopes.y + i);
-    const CurvePoint fresnel = on_curve<true>(plan.reflectance, cosine_of(facet));
-    const Way way = way_of(plan, facet);
+    const CurvePoint fresnel = on_curve<true>(plan.reflectance, hn::Mul(facet.s, facet.inverse_n));
     const BinPoint at =
-        between_bins(framed_values, plan.framed_stride(), place_of(way.x, plan.bins_x), place_of(way.y, plan.bins_y));
+        between_bins(framed_values, plan.framed_stride(), place_of(facet.k, facet.p, plan.to_light_x, plan.bins_x),
+                     place_of(facet.k, facet.q, plan.to_light_y, plan.bins_y));
+    // By cosθ_i only where there is light: a facet that sends none has no slope.
+    const Vector per_cosine = hn::IfThenElseZero(hn::Gt(facet.s, hn::Zero(d)), by_cosine);
     const Vector weight = hn::Mul(fresnel.value, facet.s);
     const Vector toward_u = hn::Mul(weight, hn::Mul(at.along_x, half_x)),
                  toward_v = hn::Mul(weight, hn::Mul(at.along_y, half_y));
@@ -253,7 +243,7 @@ void derive(const LobePlan& plan, const FacetSlopes& slopes, const double* frame
       const Vector moved =
           hn::Sub(hn::Mul(hn::Add(to_light, hn::Mul(facet.k, slope)), along), hn::Mul(facet.k, toward));
       const Vector sum = hn::Add(hn::Mul(weight_slope(facet, fresnel, slope, to_light), at.value), moved);
-      return hn::DemoteTo(Floats(), hn::IfThenElseZero(facet.lit, hn::Mul(sum, by_cosine)));
+      return hn::DemoteTo(Floats(), hn::Mul(sum, per_cosine));
     };
     hn::StoreU(total(facet.p, ix, toward_u), Floats(), toward_x + i);
     hn::StoreU(total(facet.q, iy, toward_v), Floats(), toward_y + i);

@@ -9,7 +9,7 @@
 
 namespace mezzotint {
 
-/// A curve over [0, 1] by one cubic on each of even steps, for look-ups.
+/// A curve over [0, 1] by one cubic on each of even steps, for look-ups; and one more from 1 on.
 struct CurveCells {
   std::size_t steps = 0;
   std::vector<double> terms;  ///< four a step, of t³, t², t and 1, with t from 0 to 1 within it

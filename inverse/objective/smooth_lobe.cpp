@@ -27,6 +27,9 @@ CurveCells reflectance_cells(const Material& material) {
     cells.terms.insert(cells.terms.end(),
                        {0.5 * (3.0 * (p1 - p2) + p3 - p0), p0 - 2.5 * p1 + 2.0 * p2 - 0.5 * p3, 0.5 * (p2 - p0), p1});
   }
+  // What stands in the last node, and in a rounding beyond it, has a cell of its own.
+  const double before = nodes[reflectance_steps], last = nodes[reflectance_steps + 1], after = nodes.back();
+  cells.terms.insert(cells.terms.end(), {0.0, 0.0, 0.5 * (after - before), last});
   return cells;
 }
 

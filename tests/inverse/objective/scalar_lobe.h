@@ -93,7 +93,8 @@ private:
   }
 
   // With slopes p, q: m = (−p, −q, 1)/n, s = n·(ω_i·m), ω_o = 2 s/n² (−p, −q, 1) − ω_i, weight F(s/n)·s/cosθ_i.
-  [[nodiscard]] Sent sent(double p, double q) const {
+  // Out of line, so that the time of a map is that with all of it.
+  [[nodiscard, gnu::noinline]] Sent sent(double p, double q) const {
     const double ix = to_light_.x(), iy = to_light_.y(), iz = to_light_.z();
     const double square = 1.0 + p * p + q * q, s = iz - p * ix - q * iy;
     if (s <= 0.0 || 2.0 * s / square <= iz) return {};  // turned away from the light, or sent downward
