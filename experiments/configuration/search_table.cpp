@@ -62,6 +62,8 @@ SearchSpecification read_search(TomlTable table, bool has_lobe) {
       static_cast<std::uint64_t>(table.integer("seed", 0, std::int64_t{1} << 38, std::int64_t(minimize.seed)));
   search.draws = static_cast<std::size_t>(table.integer("draws", 1, 256, std::int64_t(search.draws)));
   search.fresh_draws = static_cast<std::size_t>(table.integer("fresh_draws", 2, 256, std::int64_t(search.fresh_draws)));
+  search.traced.corrections = static_cast<int>(table.integer("traced_corrections", 0, 4, search.traced.corrections));
+  search.traced.evaluations = static_cast<int>(table.integer("traced_evaluations", 0, 1000, search.traced.evaluations));
   table.finish();
   return search;
 }

@@ -5,6 +5,7 @@
 
 #include "experiments/configuration/toml_table.h"
 #include "inverse/design/design_goal.h"
+#include "inverse/design/traced_polish.h"
 #include "inverse/search/minimize.h"
 
 namespace mezzotint {
@@ -15,6 +16,7 @@ struct SearchSpecification {
   MeasureSum objective;  ///< empty: "automatic"
   std::size_t draws = 8;
   std::size_t fresh_draws = 12;
+  TracedPlan traced;
 
   /// Whether the objective is named and counts slopes alone, or light.
   [[nodiscard]] bool by_slopes() const;

@@ -64,20 +64,81 @@ SearchOutcome search_from_json(const Json& json) {
   return search;
 }
 
-Json distance_to_json(const JudgedDistance& d) {
-  return {{"measure", name_of(d.measure)},
-          {"on_search_draws", d.on_search_draws},
-          {"floor", number_to_json(d.floor)},
-          {"on_fresh_draws", {d.on_fresh_draws.value, number_to_json(d.on_fresh_draws.standard_error)}},
-          {"fresh_floor", number_to_json(d.fresh_floor)}};
+Json estimate_to_json(const Estimate& e) { return {number_to_json(e.value), number_to_json(e.standard_error)}; }
+Estimate plain_estimate_from_json(const Json& json) {
+  return {number_from_json(json.at(0)), number_from_json(json.at(1))};
 }
-JudgedDistance distance_from_json(const Json& json) {
-  const Json& fresh = json.at("on_fresh_draws");
-  return {measure_named(json.at("measure").get<std::string>()),
-          json.at("on_search_draws"),
-          number_from_json(json.at("floor")),
-          {fresh.at(0).get<double>(), number_from_json(fresh.at(1))},
-          number_from_json(json.at("fresh_floor"))};
+
+LobeDistance lobe_distance_named(const std::string& name) { return lobe_distance_of(measure_named(name)).value(); }
+
+// The figures; the maps themselves are images of their own.
+Json judgement_to_json(const LobeJudgement& judgement) {
+  Json json = {{"distances", Json::array()}, {"reflected", Json::array()}};
+  for (const JudgedDistance& d : judgement.distances) {
+    json["distances"].push_back({{"distance", name_of(d.distance)},
+                                 {"square", estimate_to_json(d.square)},
+                                 {"root", estimate_to_json(d.root)},
+                                 {"floor", estimate_to_json(d.floor)},
+                                 {"root_floor", number_to_json(d.root_floor)}});
+  }
+  for (const Estimate& light : judgement.reflected) json["reflected"].push_back(estimate_to_json(light));
+  return json;
+}
+LobeJudgement judgement_from_json(const Json& json) {
+  LobeJudgement judgement;
+  for (const Json& d : json.at("distances")) {
+    judgement.distances.push_back({lobe_distance_named(d.at("distance").get<std::string>()),
+                                   plain_estimate_from_json(d.at("square")), plain_estimate_from_json(d.at("root")),
+                                   plain_estimate_from_json(d.at("floor")), number_from_json(d.at("root_floor"))});
+  }
+  for (const Json& light : json.at("reflected")) judgement.reflected.push_back(plain_estimate_from_json(light));
+  return judgement;
+}
+
+Json verification_to_json(const Verification& v) {
+  Json json = {{"seeds", v.seeds},
+               {"traced", judgement_to_json(v.traced)},
+               {"by_slope", judgement_to_json(v.by_slope)},
+               {"wanted_light", v.wanted_light}};
+  for (const EnergyAudit& audit : v.energy) {
+    json["energy"].push_back({{"reflected", estimate_to_json(audit.reflected)},
+                              {"transmitted", estimate_to_json(audit.transmitted)},
+                              {"absorbed", estimate_to_json(audit.absorbed)},
+                              {"left_sideways", estimate_to_json(audit.left_sideways)},
+                              {"cut_off", estimate_to_json(audit.cut_off)}});
+  }
+  return json;
+}
+Verification verification_from_json(const Json& json) {
+  Verification v{.seeds = json.at("seeds"),
+                 .traced = judgement_from_json(json.at("traced")),
+                 .by_slope = judgement_from_json(json.at("by_slope")),
+                 .wanted_light = json.at("wanted_light")};
+  for (const Json& audit : json.at("energy")) {
+    const auto share = [&](const char* name) { return plain_estimate_from_json(audit.at(name)); };
+    v.energy.push_back(
+        {share("reflected"), share("transmitted"), share("absorbed"), share("left_sideways"), share("cut_off")});
+  }
+  return v;
+}
+
+Json intervals_to_json(const ParameterIntervals& intervals) {
+  Json json = {{"half_widths_95", Json::array()}, {"combinations", Json::array()}};
+  for (const double width : intervals.half_widths_95) json["half_widths_95"].push_back(number_to_json(width));
+  for (const ParameterCombination& c : intervals.combinations) {
+    json["combinations"].push_back(
+        {{"change", c.change}, {"half_width_95", number_to_json(c.half_width_95)}, {"determined", c.determined}});
+  }
+  return json;
+}
+// A width that is not finite is unbounded.
+double width_from_json(const Json& json) { return json.is_null() ? HUGE_VAL : json.get<double>(); }
+ParameterIntervals intervals_from_json(const Json& json) {
+  ParameterIntervals intervals;
+  for (const Json& width : json.at("half_widths_95")) intervals.half_widths_95.push_back(width_from_json(width));
+  for (const Json& c : json.at("combinations"))
+    intervals.combinations.push_back({c.at("change"), width_from_json(c.at("half_width_95")), c.at("determined")});
+  return intervals;
 }
 
 Json variable_to_json(const Variable& variable) {
@@ -127,7 +188,11 @@ Json to_json(const Design& design) {
   }
   for (const auto& c : design.fresh_covariances) json["fresh_covariances"].push_back({c.xx, c.yy, c.xy});
   for (const auto& variable : design.variables) json["variables"].push_back(variable_to_json(variable));
-  for (const auto& distance : design.distances) json["distances"].push_back(distance_to_json(distance));
+  if (design.on_search_lobes) json["on_search_lobes"] = judgement_to_json(*design.on_search_lobes);
+  if (design.on_fresh_lobes) json["on_fresh_lobes"] = judgement_to_json(*design.on_fresh_lobes);
+  if (design.traced) json["traced"] = verification_to_json(*design.traced);
+  json["held_out_ratio"] = number_to_json(design.held_out_ratio);
+  json["intervals"] = intervals_to_json(design.intervals);
   return json;
 }
 
@@ -149,7 +214,11 @@ Design design_from_json(const Json& json) {
   design.print_seed = json.at("print_seed");
   for (const Json& c : json.at("fresh_covariances")) design.fresh_covariances.push_back({c.at(0), c.at(1), c.at(2)});
   for (const Json& variable : json.at("variables")) design.variables.push_back(variable_from_json(variable));
-  for (const Json& distance : json.at("distances")) design.distances.push_back(distance_from_json(distance));
+  if (json.contains("on_search_lobes")) design.on_search_lobes = judgement_from_json(json["on_search_lobes"]);
+  if (json.contains("on_fresh_lobes")) design.on_fresh_lobes = judgement_from_json(json["on_fresh_lobes"]);
+  if (json.contains("traced")) design.traced = verification_from_json(json["traced"]);
+  design.held_out_ratio = number_from_json(json.at("held_out_ratio"));
+  design.intervals = intervals_from_json(json.at("intervals"));
   return design;
 }
 

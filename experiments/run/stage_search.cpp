@@ -39,6 +39,7 @@ DesignProblem problem_of(const StageContext& context, const Target& target) {
           .objective = experiment.search.objective,
           .lobes = lobe_target_of(context, target),
           .by_light = is_by_light(experiment),
+          .traced = experiment.search.traced,
           .log = context.folder / "evaluations.jsonl",
           .log_digest = experiment_digest(experiment)};
 }

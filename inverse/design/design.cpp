@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
@@ -16,6 +15,7 @@ namespace {
 // Seeds of the search and of the verification must never meet, whatever the user's seed.
 constexpr std::uint64_t seed_stride = 1000;
 constexpr std::uint64_t fresh_offset = 500;
+constexpr double most_held_out_ratio = 1.3;
 
 std::vector<std::uint64_t> consecutive_seeds(std::uint64_t first, std::size_t count) {
   std::vector<std::uint64_t> seeds(count);
@@ -72,21 +72,13 @@ void warn_of_bounds(Design& design) {
   }
 }
 
-// Held-out ÷ trained, of roots.
 void warn_of_overfit(Design& design) {
-  for (const JudgedDistance& distance : design.distances) {
-    const double train = std::max(distance.on_search_draws, distance.floor), held_out = distance.on_fresh_draws.value,
-                 noise = distance.fresh_floor;
-    const bool lowered = std::ranges::any_of(
-        design.search.lowered, [&](const WeightedMeasure& term) { return term.measure == distance.measure; });
-    if (lowered && held_out > 1.3 * 1.3 * train + 9.0 * noise) {
-      design.warnings.push_back(
-          fmt::format("on draws that the search has not seen the root of {} is {:.2g} times that on its own: it fitted "
-                      "its draws; give "
-                      "it more draws or a larger patch",
-                      name_of(distance.measure), std::sqrt(held_out / train)));
-    }
-  }
+  if (design.held_out_ratio <= most_held_out_ratio) return;
+  design.warnings.push_back(
+      fmt::format("on draws that the search has not seen the error is {:.2g} times that on its own: it fitted its "
+                  "draws; give it more "
+                  "draws or a larger patch",
+                  design.held_out_ratio));
 }
 
 // Every draw is off by its own chance; the judgement is on all of them, but one has to be printed.
@@ -110,35 +102,55 @@ SlopeModel fresh_model(const DesignProblem& problem, const std::vector<std::uint
           {.levels = GrayLevels::Quantized, .drawn_ground = true, .place_x = 0.23, .place_y = 0.71}};
 }
 
-Estimate jackknife(const DesignGoal& goal, Measure measure, const std::vector<SlopeModel::Shown>& draws) {
-  const double value = goal.distance(measure, mean_of(draws));
-  const auto n = static_cast<double>(draws.size());
-  double spread = 0.0;
-  for (std::size_t left_out = 0; left_out < draws.size(); ++left_out) {
-    std::vector<SlopeModel::Shown> others = draws;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(left_out));
-    spread += std::pow(goal.distance(measure, mean_of(others)) - value, 2);
+std::vector<std::vector<DirectionMap>> maps_of(const std::vector<SlopeModel::Shown>& draws) {
+  std::vector<std::vector<DirectionMap>> maps;
+  maps.reserve(draws.size());
+  for (const SlopeModel::Shown& draw : draws) maps.push_back(draw.maps);
+  return maps;
+}
+
+// Of roots, each with what its draws' own scatter gives added to the search's: a search without error has no ratio.
+double held_out_ratio(const DesignGoal& goal, const MeasureSum& lowered, const std::vector<SlopeModel::Shown>& searched,
+                      const std::vector<SlopeModel::Shown>& fresh, const Design& design) {
+  const double trained = goal.distance(lowered, mean_of(searched)), held_out = goal.distance(lowered, mean_of(fresh));
+  double noise = 0.0;
+  for (const WeightedMeasure& term : lowered) {
+    const auto kind = lobe_distance_of(term.measure);
+    if (kind && design.on_fresh_lobes) noise += term.weight * design.on_fresh_lobes->by(*kind).floor.value;
+    if (!kind) {
+      const SlopeAxesEstimate& e = design.on_fresh_draws;
+      noise += term.weight * 4.0 *
+               (std::pow(e.rms_major_error / e.axes.rms_major, 2) + std::pow(e.rms_minor_error / e.axes.rms_minor, 2));
+    }
   }
-  return {value, std::sqrt(spread * (n - 1.0) / n)};
+  return std::sqrt((held_out + noise) / (trained + 2.0 * noise));
 }
 
-double value_of(const std::vector<MeasuredDistance>& distances, Measure measure) {
-  const auto found = std::ranges::find(distances, measure, &MeasuredDistance::measure);
-  return found == distances.end() ? std::numeric_limits<double>::quiet_NaN() : found->value;
-}
-
+// The slopes, and with lobes every distance, by slopes alone.
 void judge(const DesignGoal& goal, const std::vector<SlopeModel::Shown>& searched,
            const std::vector<SlopeModel::Shown>& fresh, Design& design) {
-  const std::vector<MeasuredDistance> on_search = goal.all(mean_of(searched)), floors = noise_floors(goal, searched),
-                                      fresh_floors = noise_floors(goal, fresh);
-  for (const MeasuredDistance& trained : on_search) {
-    design.distances.push_back({trained.measure, trained.value, value_of(floors, trained.measure),
-                                jackknife(goal, trained.measure, fresh), value_of(fresh_floors, trained.measure)});
-    if (trained.measure != Measure::CubeRoot || !goal.by_light()) continue;
-    const Estimate& square = design.distances.back().on_fresh_draws;
-    const double root = std::sqrt(square.value);
-    design.fresh_lobe_error = Estimate{root, 0.5 * square.standard_error / root};
-  }
+  if (!goal.lobes()) return;
+  if (searched.size() >= 4) design.on_search_lobes = judge_draws(maps_of(searched), *goal.lobes());
+  if (fresh.size() < 4) return;
+  design.on_fresh_lobes = judge_draws(maps_of(fresh), *goal.lobes());
+  if (goal.by_light()) design.fresh_lobe_error = design.on_fresh_lobes->by(LobeDistance::CubeRoot).root;
+}
+
+void trace_verdict(const DesignProblem& problem, Design& design, const Progress& progress) {
+  const std::size_t draws = std::min(problem.traced_draws, design.fresh_seeds.size());
+  if (!problem.lobes || draws < 4) return;
+  const GrayOfSeed gray = [&](std::uint64_t seed) {
+    return expose(pixel_heights(draw_instance(design.pattern, seed), problem.printer, problem.patch.pixels),
+                  problem.printer)
+        .image;
+  };
+  VerificationOptions options;
+  options.draw.subsamples = std::max<std::size_t>(options.draw.subsamples, problem.patch.subsamples);
+  options.draw.wavelength = problem.patch.wavelength;
+  options.seeds.assign(design.fresh_seeds.begin(), design.fresh_seeds.begin() + static_cast<std::ptrdiff_t>(draws));
+  options.samples = 1U << 19;
+  design.traced = verify_design(gray, problem.printer, *problem.lobes, options, progress);
+  if (problem.by_light) design.fresh_lobe_error = design.traced->traced.by(LobeDistance::CubeRoot).root;
 }
 
 std::vector<SlopeCovariance> covariances_of(const std::vector<SlopeModel::Shown>& draws) {
@@ -177,10 +189,15 @@ Design find_design(const DesignProblem& problem, const Progress& progress) {
   if (!problem.log.empty()) log.emplace(problem.log, problem.log_digest);
   design.search = search_pattern(goal, problem.pattern, design.variables, problem.printer, problem.patch, plan,
                                  log ? &*log : nullptr, progress);
+  if (problem.by_light) {
+    polish_traced(goal, problem.pattern, design.variables, problem.printer, problem.patch, plan, problem.traced,
+                  log ? &*log : nullptr, design.search, progress);
+  }
   design.pattern = with_values(problem.pattern, design.variables, design.search.values);
   design.warnings = design.search.warnings;
 
-  const auto searched = SlopeModel(problem.printer, problem.patch, plan.seeds, problem.lobes).draws(design.pattern);
+  const SlopeModel model(problem.printer, problem.patch, plan.seeds, problem.lobes);
+  const auto searched = model.draws(design.pattern);
   design.on_search_draws = estimate_axes(covariances_of(searched));
   design.fresh_seeds = fresh_seeds(problem);
   const auto fresh = fresh_model(problem, design.fresh_seeds).draws(design.pattern);
@@ -189,7 +206,13 @@ Design find_design(const DesignProblem& problem, const Progress& progress) {
   design.print_seed = closest_draw(problem, design);
   design.fresh_error = target_error(mean_of(design.fresh_covariances).mean, problem.target);
   judge(goal, searched, fresh, design);
-  design.met = problem.by_light ? design.fresh_lobe_error->value <= problem.target.tolerance
+  design.held_out_ratio = held_out_ratio(goal, design.search.lowered, searched, fresh, design);
+  if (plan.seeds.size() >= 3) {
+    design.intervals = parameter_intervals(goal, design.search.lowered, model, problem.pattern, design.variables,
+                                           design.search.values, problem.target_draws);
+  }
+  trace_verdict(problem, design, progress);
+  design.met = problem.by_light ? design.fresh_lobe_error && design.fresh_lobe_error->value <= problem.target.tolerance
                                 : is_met(design.fresh_error, problem.target);
   warn_of_pixels(problem, design);
   warn_of_bounds(design);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -8,9 +9,12 @@
 
 #include "forward/base/progress.h"
 #include "inverse/design/design_variables.h"
+#include "inverse/design/parameter_intervals.h"
 #include "inverse/design/pattern_search.h"
 #include "inverse/design/printed_texture.h"
+#include "inverse/design/traced_polish.h"
 #include "inverse/target/target.h"
+#include "inverse/verification/verification.h"
 
 namespace mezzotint {
 
@@ -29,17 +33,11 @@ struct DesignProblem {
   /// The lobes are what is wanted, and `target.tolerance` is for their cube-root error; else the slopes are, and it is
   /// for their variances.
   bool by_light = false;
-  std::filesystem::path log;  ///< of all evaluations, to go on from; empty: none
-  std::string log_digest;     ///< stands for all of the problem in the log, which is refused for another
-};
-
-/// A measure on the search's own draws and on fresh ones. All are squares.
-struct JudgedDistance {
-  Measure measure = Measure::SlopeCovariance;
-  double on_search_draws = 0.0;  ///< gray levels continuous
-  double floor = 0.0;            ///< what the search draws' own scatter gives it
-  Estimate on_fresh_draws;       ///< as printed; standard error by delete-one jackknife over the draws
-  double fresh_floor = 0.0;
+  TracedPlan traced;               ///< the last rungs, for a problem by light
+  std::size_t traced_draws = 4;    ///< fresh draws that are traced for the verdict; 0: none
+  double target_draws = HUGE_VAL;  ///< how many draws of the patch a measured target stands for (its area)
+  std::filesystem::path log;       ///< of all evaluations, to go on from; empty: none
+  std::string log_digest;          ///< stands for all of the problem in the log, which is refused for another
 };
 
 /// What was found.
@@ -54,7 +52,13 @@ struct Design {
   /// The fresh draw to print: its own covariance is closest to the target's (with a lobe: to the mean's).
   std::uint64_t print_seed = 0;
   TargetError fresh_error;
-  std::vector<JudgedDistance> distances;     ///< of every measure that the problem has
+  /// Every distance of the lobes: on the search's own draws (gray levels continuous, the mean ground), on the fresh
+  /// ones as printed, both by slopes alone; and on some of those traced. None without lobes.
+  std::optional<LobeJudgement> on_search_lobes, on_fresh_lobes;
+  std::optional<Verification> traced;
+  /// Held-out ÷ trained, of the root of what was lowered; above 1.3 the search fitted its draws.
+  double held_out_ratio = 1.0;
+  ParameterIntervals intervals;
   std::optional<Estimate> fresh_lobe_error;  ///< √ of the cube root's on the fresh draws, of a lobe target
   bool met = false;
   /// In words: saturated pixels, wavelengths under 4 pixels, a bound that was hit, an overfit to the search's draws.

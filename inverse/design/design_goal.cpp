@@ -72,26 +72,4 @@ double DesignGoal::distance(const MeasureSum& sum, const SlopeModel::Shown& show
   return total;
 }
 
-std::vector<MeasuredDistance> DesignGoal::all(const SlopeModel::Shown& shown) const {
-  std::vector<MeasuredDistance> found;
-  for (const Measure measure : all_measures) {
-    if (lobes_ || measure == Measure::SlopeCovariance) found.push_back({measure, distance(measure, shown)});
-  }
-  return found;
-}
-
-std::vector<MeasuredDistance> noise_floors(const DesignGoal& goal, const std::vector<SlopeModel::Shown>& draws) {
-  if (draws.size() < 2) return {};
-  const auto middle = draws.begin() + static_cast<std::ptrdiff_t>(draws.size() / 2);
-  const SlopeModel::Shown first = mean_of(std::vector(draws.begin(), middle)),
-                          second = mean_of(std::vector(middle, draws.end()));
-  Target target = goal.target();
-  target.slopes = principal_axes(first.covariance);
-  std::optional<LobeTarget> lobes = goal.lobes();
-  if (lobes) lobes->maps = first.maps;
-  std::vector<MeasuredDistance> floors = DesignGoal(target, lobes, goal.by_light()).all(second);
-  for (MeasuredDistance& floor : floors) floor.value *= 0.25;
-  return floors;
-}
-
 }  // namespace mezzotint

@@ -33,12 +33,6 @@ struct WeightedMeasure {
 };
 using MeasureSum = std::vector<WeightedMeasure>;
 
-/// A measure and what it comes to.
-struct MeasuredDistance {
-  Measure measure = Measure::SlopeCovariance;
-  double value = 0.0;
-};
-
 /// What a search is for: slopes, lobes, or both. Where the lobes are what the user gave (`by_light`), slopes are those
 /// that the lobes imply, on both sides.
 class DesignGoal {
@@ -55,18 +49,11 @@ public:
   [[nodiscard]] SlopeCovariance covariance(const SlopeModel::Shown& shown) const;
   [[nodiscard]] double distance(Measure measure, const SlopeModel::Shown& shown) const;
   [[nodiscard]] double distance(const MeasureSum& sum, const SlopeModel::Shown& shown) const;
-  /// Every measure that the goal has.
-  [[nodiscard]] std::vector<MeasuredDistance> all(const SlopeModel::Shown& shown) const;
 
 private:
   Target target_;
   std::optional<LobeTarget> lobes_;
   bool by_light_;
 };
-
-/// What noise alone gives each measure of the mean of some draws: a quarter of the distance of one half of them from
-/// the other, since the mean of all has a quarter of the variance of their difference. Empty with fewer than two draws.
-[[nodiscard]] std::vector<MeasuredDistance> noise_floors(const DesignGoal& goal,
-                                                         const std::vector<SlopeModel::Shown>& draws);
 
 }  // namespace mezzotint

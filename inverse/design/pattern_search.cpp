@@ -9,6 +9,7 @@
 #include "forward/base/error.h"
 #include "inverse/design/design_variables.h"
 #include "inverse/design/moments_start.h"
+#include "inverse/verification/judge_draws.h"
 
 namespace mezzotint {
 
@@ -237,12 +238,13 @@ private:
 
   bool shape_fits(const Place& place) {
     const std::vector<SlopeModel::Shown> draws = fine_.model.draws(with_values(pattern_, variables_, place.values));
-    double floor = 0.0;
-    for (const MeasuredDistance& noise : noise_floors(goal_, draws)) {
-      if (noise.measure == Measure::CubeRoot) floor = noise.value;
-    }
+    std::vector<std::vector<DirectionMap>> maps;
+    for (const SlopeModel::Shown& draw : draws) maps.push_back(draw.maps);
+    // The draws' own scatter is told from a misfit where there are enough of them.
+    const double floor =
+        draws.size() < 4 ? 0.0 : judge_draws(maps, *goal_.lobes()).by(LobeDistance::CubeRoot).floor.value;
     const double residual = goal_.distance(Measure::CubeRoot, mean_of(draws));
-    outcome_.shape_fits = residual <= std::pow(residual_of_a_shape, 2) + 9.0 * floor;
+    outcome_.shape_fits = residual <= std::pow(residual_of_a_shape, 2) + 4.0 * floor;
     return outcome_.shape_fits;
   }
 

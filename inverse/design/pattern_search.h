@@ -21,6 +21,7 @@ struct SearchPlan {
   std::size_t scanned = 24;          ///< places that are looked at before the local searches
   std::size_t starts = 4;            ///< of the best of them, each with a local search
   int mapping_steps = 6;             ///< corrections of the moments' answer
+  bool from_start = false;           ///< one local search on all draws from the variables' starts, and no more
 };
 
 /// One evaluation of a search.

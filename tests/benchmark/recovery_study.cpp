@@ -118,7 +118,7 @@ void study(const Family& family, int targets) {
       .levels = GrayLevels::Quantized, .drawn_ground = true, .place_x = 0.3, .place_y = 0.6};
   std::vector<std::uint64_t> target_seeds, judge_seeds;
   for (std::uint64_t i = 0; i < 8; ++i) target_seeds.push_back(900001 + i), judge_seeds.push_back(800001 + i);
-  const SlopeModel showing(printer, patch, target_seeds, empty_target(), as_printed);
+  const SlopeModel showing(printer, judging, target_seeds, empty_target(), as_printed);
   const SlopeModel judge(printer, judging, judge_seeds, {}, as_printed);
 
   std::vector<double> errors, costs, seconds, roots;
@@ -136,6 +136,8 @@ void study(const Family& family, int targets) {
     problem.patch = patch;
     problem.search_draws = family.draws;
     problem.fresh_draws = 4;
+    problem.traced = {.corrections = 0, .evaluations = 0};
+    problem.traced_draws = 0;
     problem.lobes = lobes;
     problem.by_light = true;
     problem.search.seed = static_cast<std::uint64_t>(k + 1);

@@ -14,7 +14,13 @@ Design some_design() {
   design.search = {.values = {61.7}, .objective = 1e-17, .lowered = {{Measure::CubeRoot, 0.7}}, .cost = 1.25};
   design.search.history = {{"moments", {{90.1}, 0.1 + 0.2}, 1.0}, {"scan", {{61.7}, std::nan("")}, 0.25}};
   design.search.outcome = "converged";
-  design.distances = {{Measure::Wasserstein, 0.1, 1.0 / 3.0, {0.2, std::nan("")}, 1e-9}};
+  LobeJudgement judgement;
+  judgement.distances = {{LobeDistance::Wasserstein, {0.1, 1.0 / 3.0}, {0.3, std::nan("")}, {1e-9, 0.0}, 3e-5}};
+  judgement.reflected = {{0.04, 1e-5}};
+  design.on_fresh_lobes = judgement;
+  design.traced = Verification{
+      .seeds = {1500, 1501}, .traced = judgement, .by_slope = judgement, .energy = {{}}, .wanted_light = {0.04}};
+  design.intervals = {{{{1.0}, HUGE_VAL, false}}, {HUGE_VAL}};
   design.fresh_covariances = {{0.1, 0.2, 0.3}, {0.4, 0.5, -0.6}};
   design.fresh_seeds = {1500, 1501};
   design.warnings = {"µm \"quoted\""};

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "forward/base/progress.h"
+#include "inverse/design/pattern_search.h"
+
+namespace mezzotint {
+
+/// What tracing is spent on after a search by slopes.
+struct TracedPlan {
+  int corrections = 1;    ///< of the goal by what tracing shows, each followed by a search by slopes; 0 … 4
+  int evaluations = 8;    ///< of a last search on traced light itself; 0: none
+  std::size_t draws = 4;  ///< of the search's own, the same ones at every step
+  std::uint64_t samples = 1U << 16;  ///< paths a draw and direction of the light
+};
+
+/// The last rungs of the search: what slopes alone leave out (shadows, further reflections, the printer's rounding),
+/// put right by tracing.
+///
+/// Correction  the goal's maps plus what slopes show more than tracing does at the place found: a search by slopes for
+///             that ends where tracing shows the goal. Kept where it is better as traced.
+/// Polish      a short search on traced light, with common random numbers in pattern, ground and paths.
+/// @param outcome  of search_pattern on a goal by its light; its values, objective (as traced), history and cost are
+///                 changed. A traced evaluation costs as many of the slope model's as its time says (`traced_cost`).
+void polish_traced(const DesignGoal& goal, const Pattern& pattern, const std::vector<Variable>& variables,
+                   const PrinterProfile& printer, const PatchOptions& patch, const SearchPlan& plan,
+                   const TracedPlan& traced, EvaluationLog* log, SearchOutcome& outcome, const Progress& progress = {});
+
+/// What a traced evaluation is counted as, in evaluations of the slope model: measured at 96² to 192² pixels, two
+/// directions of the light and 2^16 paths.
+inline constexpr double traced_cost = 8.0;
+
+}  // namespace mezzotint
