@@ -124,6 +124,7 @@ void read_parameter(TomlTable& table, Pattern& pattern, const PatternParameter& 
   if (name == "height_um" && place.own_height == OwnHeight::IsNothing) {
     table.complain(name, "a factor or a mask counts by its shape alone, from 0 to 1, and has no \"height_um\"");
   }
+  if (place.use == PatternUse::Search && parameter.drawn) table.complain(name, why_fixed(parameter));
   const NumberOrFree value = table.number_or_free(name, {parameter.lowest, parameter.highest});
   if (value.fixed) {
     if (parameter.whole && *value.fixed != std::round(*value.fixed)) {
@@ -132,8 +133,8 @@ void read_parameter(TomlTable& table, Pattern& pattern, const PatternParameter& 
     set_parameter(pattern, name, *value.fixed);
   } else if (place.use == PatternUse::Synthesis) {
     table.complain(name, fmt::format("\"{}\" is free, but synthesize searches nothing; give it a value", name));
-  } else if (parameter.whole) {
-    table.complain(name, fmt::format("\"{}\" is a whole number, which a search cannot change; give it a value", name));
+  } else if (const std::string why = why_fixed(parameter); !why.empty()) {
+    table.complain(name, why);
   } else {
     place.free->push_back({place.path + name, value.low, value.high, value.start});
   }

@@ -1,10 +1,8 @@
 #include "forward/pattern/pattern.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "forward/base/random.h"
 #include "forward/pattern/pattern_drawing.h"
 #include "forward/pattern/pattern_moments.h"
 #include "forward/pattern/pattern_parameters.h"
@@ -63,23 +61,6 @@ double fit_change(const Pattern& pattern, const Sheet& sheet) {
       pattern);
 }
 
-Position along(Angle direction, double u_um, double v_um) {
-  const double c = std::cos(direction.radians()), s = std::sin(direction.radians());
-  return {Length::from_um(u_um * c - v_um * s), Length::from_um(u_um * s + v_um * c)};
-}
-
-// How far an instance is shifted.
-template <typename Kind>
-Position shift(const Kind&, const std::array<double, 4>&) {
-  return {};
-}
-Position shift(const Sinusoid& sinusoid, const std::array<double, 4>& u) {
-  return along(sinusoid.direction, u[0] * sinusoid.wavelength_u.um(), u[1] * sinusoid.wavelength_v.um());
-}
-Position shift(const Ridges& ridges, const std::array<double, 4>& u) {
-  return along(ridges.direction, u[0] * ridges.wavelength.um(), 0.0);
-}
-
 }  // namespace
 
 std::string_view kind_name(const Pattern& pattern) { return pattern_kinds().at(pattern.index()); }
@@ -124,9 +105,8 @@ std::optional<SlopeCovariance> closed_form_slope_covariance(const Pattern& patte
 }
 
 PatternInstance draw_instance(const Pattern& pattern, std::uint64_t seed) {
-  const auto u = RandomStream(seed, RandomPurpose::PatternImpulse).uniform4(0);
-  PatternInstance instance{pattern, std::visit([&u](const auto& kind) { return shift(kind, u); }, pattern)};
-  seed_all(instance.pattern, seed);
+  PatternInstance instance{pattern, {}};
+  draw_all(instance.pattern, seed);
   return instance;
 }
 

@@ -59,11 +59,11 @@ void require_valid(const Pattern& pattern);
 ///          parts; of a product E[(fg)_x²] = E f_x² E g² + E f² E g_x².
 [[nodiscard]] std::optional<SlopeCovariance> closed_form_slope_covariance(const Pattern& pattern);
 
-/// Another draw of the same texture: noises get another seed; sinusoid and ridges have no randomness of their own and
-/// are shifted by a part of their period, but not within a composition.
+/// Another draw of the same texture: noises get another seed; sinusoids and ridges, which have no randomness of their
+/// own, other phases, in a composition each its own.
 struct PatternInstance {
   Pattern pattern;
-  Position origin;
+  Position origin;  ///< where to look at it: at its own origin
 };
 [[nodiscard]] PatternInstance draw_instance(const Pattern& pattern, std::uint64_t seed);
 

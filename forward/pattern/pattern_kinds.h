@@ -89,12 +89,14 @@ struct LineIntegralConvolution {
   CellHash hash = CellHash::Integer;
 };
 
-/// height · (½ sin(2πu/λ_u) sin(2πv/λ_v) + ½), u along `direction`. Source: slide "2D sinusoid".
+/// height · (½ sin 2π(u/λ_u + phase_u) sin 2π(v/λ_v + phase_v) + ½), u along `direction`. Phases are drawn, as seeds
+/// are. Source: slide "2D sinusoid".
 struct Sinusoid {
   Length wavelength_u = Length::from_um(120.0);
   Length wavelength_v = Length::from_um(120.0);
   Angle direction;
   Length height = Length::from_um(16.0);
+  double phase_u = 0.0, phase_v = 0.0;  ///< in periods
 };
 
 /// Parallel ridges of triangular section; `direction` is that of their wave vector (across the crests).
@@ -104,6 +106,7 @@ struct Ridges {
   Angle direction;
   Length height = Length::from_um(16.0);
   double skew = 0.5;
+  double phase = 0.0;  ///< in periods, at the origin; drawn, as seeds are
 };
 
 }  // namespace mezzotint

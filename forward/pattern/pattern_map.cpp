@@ -40,6 +40,12 @@ PatternMap in_units(const PatternMap& map, double unit_u, double unit_v) {
   return {map.ux / unit_u, map.uy / unit_u, map.vx / unit_v, map.vy / unit_v, map.u0 / unit_u, map.v0 / unit_v};
 }
 
+PatternMap moved(PatternMap map, double u, double v) {
+  map.u0 += u;
+  map.v0 += v;
+  return map;
+}
+
 PatternMap fitted(PatternMap map, const Sheet& sheet) {
   if (sheet.continuation != Continuation::Periodic) return map;
   const PatternMap wanted = map;

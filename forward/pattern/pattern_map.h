@@ -26,6 +26,9 @@ struct PatternMap {
 /// (u, v) in units of `unit_u` and `unit_v`.
 [[nodiscard]] PatternMap in_units(const PatternMap& map, double unit_u, double unit_v);
 
+/// The map with so much added to u and v.
+[[nodiscard]] PatternMap moved(PatternMap map, double u, double v);
+
 /// Where a pattern is drawn.
 struct Sheet {
   Grid grid;

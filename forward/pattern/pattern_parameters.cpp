@@ -23,6 +23,8 @@ PatternParameter stretch() { return {"stretch", 1.0, 64.0, true}; }
 PatternParameter place(std::string name) { return {std::move(name), -1e6, 1e6, false}; }
 PatternParameter whole(std::string name, double low, double high) { return {std::move(name), low, high, false, true}; }
 
+PatternParameter phase(std::string name) { return {.name = std::move(name), .highest = 1.0, .drawn = true}; }
+
 using Table = std::vector<PatternParameter>;
 
 const std::array<Table, std::variant_size_v<Pattern>>& tables() {
@@ -37,8 +39,9 @@ const std::array<Table, std::variant_size_v<Pattern>>& tables() {
             whole("octaves", 1, 16)},
       Table{length("scale_um"), stretch(), direction(), height(), whole("octaves", 1, 16)},
       Table{length("scale_um"), length("length_um"), direction(), height()},
-      Table{length("wavelength_u_um"), length("wavelength_v_um"), direction(), height()},
-      Table{length("wavelength_um"), direction(), height(), {"skew", 0.01, 0.99, false}},
+      Table{length("wavelength_u_um"), length("wavelength_v_um"), direction(), height(), phase("phase_u"),
+            phase("phase_v")},
+      Table{length("wavelength_um"), direction(), height(), {"skew", 0.01, 0.99, false}, phase("phase")},
       Table{},
       Table{height()},
       Table{{"rotation_deg", -360.0, 360.0, false}, place("centre_x_um"), place("centre_y_um")},
@@ -94,10 +97,15 @@ Slots slots(LineIntegralConvolution& p) {
   return {{.length = &p.scale}, {.length = &p.length}, {.angle = &p.direction}, {.length = &p.height}};
 }
 Slots slots(Sinusoid& p) {
-  return {{.length = &p.wavelength_u}, {.length = &p.wavelength_v}, {.angle = &p.direction}, {.length = &p.height}};
+  return {{.length = &p.wavelength_u}, {.length = &p.wavelength_v}, {.angle = &p.direction},
+          {.length = &p.height},       {.number = &p.phase_u},      {.number = &p.phase_v}};
 }
 Slots slots(Ridges& p) {
-  return {{.length = &p.wavelength}, {.angle = &p.direction}, {.length = &p.height}, {.number = &p.skew}};
+  return {{.length = &p.wavelength},
+          {.angle = &p.direction},
+          {.length = &p.height},
+          {.number = &p.skew},
+          {.number = &p.phase}};
 }
 Slots slots(PatternSum&) { return {}; }
 Slots slots(PatternProduct& p) { return {{.length = &p.height}}; }
@@ -205,6 +213,13 @@ Pattern default_pattern(std::string_view kind) {
     throw InvalidInput(fmt::format("unknown pattern kind \"{}\"; known: {}", kind, fmt::join(pattern_kinds(), ", ")));
   }
   return defaults.at(static_cast<std::size_t>(found - pattern_kinds().begin()));
+}
+
+std::string why_fixed(const PatternParameter& parameter) {
+  const auto say = [&](const char* what) { return fmt::format("\"{}\" is {}", parameter.name, what); };
+  if (parameter.whole) return say("a whole number, which a search cannot change; give it a value");
+  if (parameter.drawn) return say("drawn anew by a search, as the seeds of noise are; leave it out");
+  return {};
 }
 
 const std::vector<PatternParameter>& pattern_parameters(const Pattern& pattern) { return tables().at(pattern.index()); }

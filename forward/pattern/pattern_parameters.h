@@ -16,8 +16,12 @@ struct PatternParameter {
   double lowest = 0.0;       ///< smallest value with a meaning
   double highest = 0.0;      ///< largest value with a meaning
   bool logarithmic = false;  ///< a search should step by factors, not by differences
-  bool whole = false;        ///< a whole number; a search cannot change it
+  bool whole = false;        ///< a whole number
+  bool drawn = false;        ///< another one in every draw of the texture
 };
+
+/// Why a search cannot change it; empty where it can.
+[[nodiscard]] std::string why_fixed(const PatternParameter& parameter);
 
 /// The kinds of pattern, by name: the simple ones, then the compositions.
 [[nodiscard]] const std::vector<std::string_view>& pattern_kinds();

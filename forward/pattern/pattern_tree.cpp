@@ -1,5 +1,7 @@
 #include "forward/pattern/pattern_tree.h"
 
+#include <array>
+
 #include "forward/base/random.h"
 
 namespace mezzotint {
@@ -23,6 +25,36 @@ void make_independent(Pattern& pattern, std::uint64_t place) {
       pattern);
 }
 
+using Uniform = std::array<double, 4>;
+
+template <typename Kind>
+void set_phases(Kind&, const Uniform&) {}
+void set_phases(Sinusoid& sinusoid, const Uniform& u) {
+  sinusoid.phase_u = u[0];
+  sinusoid.phase_v = u[1];
+}
+void set_phases(Ridges& ridges, const Uniform& u) { ridges.phase = u[0]; }
+
+void draw_phases(Pattern& pattern, const Uniform& uniform) {
+  std::visit([&uniform](auto& kind) { set_phases(kind, uniform); }, pattern);
+}
+
+void draw_part(Pattern& pattern, std::uint64_t seed, std::uint64_t place) {
+  std::visit(
+      [=]<typename Kind>(Kind& kind) {
+        if constexpr (Random<Kind>) kind.seed = seed;
+        if constexpr (Composed<Kind>) {
+          std::uint64_t number = 0;
+          for (PatternPart& part : kind.parts) {
+            const std::uint64_t below = mixed(place, ++number);
+            draw_phases(part.pattern, RandomStream(mixed(seed, below), RandomPurpose::PatternPart).uniform4(0));
+            draw_part(part.pattern, seed, below);
+          }
+        }
+      },
+      pattern);
+}
+
 template <typename Kind>
 PatternMap stretched_map(const Kind& kind, const Sheet& sheet) {
   return in_units(turned(sheet.place, kind.direction), kind.scale.um(), kind.scale.um() * kind.stretch);
@@ -36,15 +68,9 @@ Pattern with_independent_parts(const Pattern& pattern) {
   return result;
 }
 
-void seed_all(Pattern& pattern, std::uint64_t seed) {
-  std::visit(
-      [seed]<typename Kind>(Kind& kind) {
-        if constexpr (Random<Kind>) kind.seed = seed;
-        if constexpr (Composed<Kind>) {
-          for (PatternPart& part : kind.parts) seed_all(part.pattern, seed);
-        }
-      },
-      pattern);
+void draw_all(Pattern& pattern, std::uint64_t seed) {
+  draw_phases(pattern, RandomStream(seed, RandomPurpose::PatternImpulse).uniform4(0));
+  draw_part(pattern, seed, 0);
 }
 
 Sheet sheet_below(const TurnedPattern& pattern, Sheet sheet) {
@@ -64,10 +90,13 @@ PatternMap map_of(const LineIntegralConvolution& lines, const Sheet& sheet) {
   return in_units(turned(sheet.place, lines.direction), lines.scale.um(), lines.scale.um());
 }
 PatternMap map_of(const Sinusoid& sinusoid, const Sheet& sheet) {
-  return in_units(turned(sheet.place, sinusoid.direction), sinusoid.wavelength_u.um(), sinusoid.wavelength_v.um());
+  const PatternMap map =
+      in_units(turned(sheet.place, sinusoid.direction), sinusoid.wavelength_u.um(), sinusoid.wavelength_v.um());
+  return moved(map, sinusoid.phase_u, sinusoid.phase_v);
 }
 PatternMap map_of(const Ridges& ridges, const Sheet& sheet) {
-  return in_units(turned(sheet.place, ridges.direction), ridges.wavelength.um(), ridges.wavelength.um());
+  const double wavelength_um = ridges.wavelength.um();
+  return moved(in_units(turned(sheet.place, ridges.direction), wavelength_um, wavelength_um), ridges.phase, 0.0);
 }
 PatternMap map_of(const PatternRegions& regions, const Sheet& sheet) {
   PatternMap map = sheet.place;

@@ -20,8 +20,8 @@ concept Composed = requires(Kind kind) {
 /// The pattern with seeds by which its parts are independent of one another.
 [[nodiscard]] Pattern with_independent_parts(const Pattern& pattern);
 
-/// All random parts get that seed.
-void seed_all(Pattern& pattern, std::uint64_t seed);
+/// All random parts get that seed, all periodic ones phases that follow from it and from their places.
+void draw_all(Pattern& pattern, std::uint64_t seed);
 
 /// Where the part of a turned pattern lies.
 [[nodiscard]] Sheet sheet_below(const TurnedPattern& turned, Sheet sheet);

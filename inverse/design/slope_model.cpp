@@ -1,6 +1,8 @@
 #include "inverse/design/slope_model.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <tbb/parallel_for.h>
 
@@ -33,19 +35,22 @@ SlopeCovariance covariance_about_mean(const ReliefSlopes& slopes) {
 }  // namespace
 
 SlopeModel::SlopeModel(const PrinterProfile& printer, const PatchOptions& patch, std::vector<std::uint64_t> seeds,
-                       const std::optional<LobeTarget>& lobes)
+                       const std::optional<LobeTarget>& lobes, const SlopeModelOptions& options)
     : printer_(printer),
       patch_(checked(patch, seeds)),
+      options_(options),
       seeds_(std::move(seeds)),
-      process_(patch.pixels, patch.pixels, printer, {patch.subsamples, Surround::Mirror}),
-      ground_rms_slope_(ground_rms_slope(printer, split_ground(printer, patch.wavelength).geometric)) {
+      process_(patch.pixels, patch.pixels, printer,
+               {patch.subsamples, Surround::Mirror, options.place_x, options.place_y}),
+      ground_(split_ground(printer, patch.wavelength).geometric),
+      mean_ground_(options.drawn_ground ? 0.0 : ground_rms_slope(printer, ground_)) {
   if (!lobes) return;
   grid_ = lobes->grid;
   for (const DirectionAngles& incidence : lobes->incidences) {
     lobes_.emplace_back(lobes->grid, lobes->material, incidence);
     // Near the mirror direction a slope moves light by 2·cosθ_i of it; a bin is 2/width wide.
     const double bins =
-        std::cos(incidence.theta.radians()) * ground_rms_slope_ * static_cast<double>(lobes->grid.grid().width);
+        std::cos(incidence.theta.radians()) * mean_ground_ * static_cast<double>(lobes->grid.grid().width);
     variances_.push_back(bins * bins);
   }
 }
@@ -56,13 +61,22 @@ double SlopeModel::samples() const {
 }
 
 ReliefSlopes SlopeModel::printed_slopes(const Pattern& pattern, std::uint64_t seed) const {
-  return process_.slopes(expose(pixel_heights(draw_instance(pattern, seed), printer_, patch_.pixels), printer_).image);
+  const GrayImage gray = expose(pixel_heights(draw_instance(pattern, seed), printer_, patch_.pixels), printer_).image;
+  ReliefSlopes slopes = process_.slopes(options_.levels == GrayLevels::Quantized ? quantize(gray, printer_) : gray);
+  if (!options_.drawn_ground) return slopes;
+  const Length pitch = printer_.pixel_pitch / static_cast<double>(patch_.subsamples);
+  const std::size_t side = patch_.pixels * patch_.subsamples;
+  const ReliefSlopes ground = ground_slopes(
+      {side, side, pitch, pitch}, {pitch * options_.place_x, pitch * options_.place_y}, printer_, ground_, seed);
+  std::ranges::transform(slopes.x, ground.x, slopes.x.begin(), std::plus<float>());
+  std::ranges::transform(slopes.y, ground.y, slopes.y.begin(), std::plus<float>());
+  return slopes;
 }
 
 SlopeModel::Shown SlopeModel::shown_by(const ReliefSlopes& slopes) const {
   Shown shown{covariance_about_mean(slopes), {}};
-  shown.covariance.xx += ground_rms_slope_ * ground_rms_slope_;
-  shown.covariance.yy += ground_rms_slope_ * ground_rms_slope_;
+  shown.covariance.xx += mean_ground_ * mean_ground_;
+  shown.covariance.yy += mean_ground_ * mean_ground_;
   for (std::size_t light = 0; light < lobes_.size(); ++light)
     shown.maps.push_back(grid_->scattered(lobes_[light].map(slopes.x, slopes.y), variances_[light]));
   return shown;

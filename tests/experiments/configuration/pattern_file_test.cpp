@@ -141,6 +141,7 @@ TEST_F(PatternFileOf, ASearchRefusesWhatItCannotChange) {
   EXPECT_NE(search(sum + "seed = 5 }]\n").find("its seed is that of [search]"), std::string::npos);
   EXPECT_NE(search(sum + "kind = \"fbm\", octaves = { free = [2, 5] } }]\n").find("a search cannot change"),
             std::string::npos);
+  EXPECT_NE(search(sum + "kind = \"ridges\", phase = 0.5 }]\n").find("drawn anew by a search"), std::string::npos);
   EXPECT_NE(search(sum + "}]\n").find("no parameter of the pattern is free"), std::string::npos);
   EXPECT_NE(search("[pattern]\nkind = \"fbm\"\noctaves = { free = [2, 5] }\n").find("a search cannot change"),
             std::string::npos);

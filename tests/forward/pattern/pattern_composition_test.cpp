@@ -1,4 +1,7 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -145,6 +148,43 @@ TEST(PatternComposition, OfEqualSeedsHasIndependentParts) {
       mean_square_about(synthesize(PatternSum{{{noise}, {Noise{.scale = 1000.0_um, .height = 0.001_um}}}}, grid), 4.0);
   const double two = mean_square_about(synthesize(PatternSum{{{noise}, {noise}}}, grid), 8.0);
   EXPECT_NEAR(two / one, 2.0, 0.2);  // 64 × 32 cells: 2 % each
+}
+
+// Two gratings of one axis and one wavelength add to anything from none to twice either of them, by their phases: only
+// over many draws with phases of their own are the slopes those of independent parts.
+TEST(PatternComposition, IsDrawnWithAPhaseOfItsOwnForEachPart) {
+  const Ridges grating{.wavelength = 60.0_um, .height = 6.0_um};
+  const Grid grid = square_grid(240, 1.0);
+  const auto slopes = [&](const Pattern& pattern, std::uint64_t seed) {
+    return slope_covariance(synthesize(draw_instance(pattern, seed).pattern, grid)).xx;
+  };
+  const Pattern sum = PatternSum{{{grating}, {TurnedPattern{180.0_deg, {}, {{grating}}}}}};
+  const double one = slopes(grating, 1);
+  double mean = 0.0, least = HUGE_VAL, most = 0.0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const double found = slopes(sum, seed) / one;
+    mean += found / 200.0;
+    least = std::min(least, found);
+    most = std::max(most, found);
+  }
+  // (2 − 4 |x|)·2 for a shift of x periods, uniform over 0 … 4: the mean of 200 is known to 0.082.
+  EXPECT_NEAR(mean, 2.0, 0.33);
+  EXPECT_LT(least, 0.2);
+  EXPECT_GT(most, 3.8);
+}
+
+TEST(PatternComposition, DrawsTheSamePhasesForTheSameSeedWhateverItsNumbers) {
+  Sinusoid other = sinusoid;
+  other.wavelength_u = 99.0_um;
+  const auto drawn = [](const Pattern& part) {
+    const PatternInstance instance = draw_instance(PatternSum{{{ridges}, {part}, {part}}}, 5);
+    const auto& parts = *parts_of(instance.pattern);
+    return std::array{std::get<Ridges>(parts[0].pattern).phase, std::get<Sinusoid>(parts[1].pattern).phase_u,
+                      std::get<Sinusoid>(parts[1].pattern).phase_v, std::get<Sinusoid>(parts[2].pattern).phase_u};
+  };
+  const auto phases = drawn(sinusoid);
+  EXPECT_EQ(phases, drawn(other));
+  EXPECT_EQ(std::set(phases.begin(), phases.end()).size(), phases.size());
 }
 
 TEST(PatternComposition, IsAValueOfItsOwn) {

@@ -92,13 +92,20 @@ TEST(ParametersOfAComposition, LeaveOutHeightsThatMeanNothing) {
       << "within a sum, a height counts against those of the other parts";
 }
 
+TEST(ParametersOfAComposition, SayWhichOfThemASearchCannotChange) {
+  EXPECT_NE(why_fixed(find_parameter(nested(), "parts[0].phase")).find("drawn anew"), std::string::npos);
+  EXPECT_NE(why_fixed(find_parameter(Turbulence{}, "octaves")).find("whole number"), std::string::npos);
+  EXPECT_EQ(why_fixed(find_parameter(nested(), "parts[0].skew")), "");
+}
+
 TEST(ParametersOfAComposition, SayWhatIsThereWhereANameIsNot) {
   const Pattern pattern = nested();
   const auto asked = [&](const char* path) { return complaint([&] { (void)get_parameter(pattern, path); }); };
   EXPECT_EQ(asked("parts[3].height_um"),
             "a pattern of kind \"sum\" has no \"parts[3]\"; it has parts[0].…, parts[1].…, parts[2].…");
   EXPECT_EQ(asked("parts[0].stretch"),
-            "a pattern of kind \"ridges\" has no \"stretch\"; it has wavelength_um, direction_deg, height_um, skew");
+            "a pattern of kind \"ridges\" has no \"stretch\"; it has wavelength_um, direction_deg, height_um, "
+            "skew, phase");
   EXPECT_NE(asked("parts[2].inner.scale_um").find("inside.…, outside.…, mask.…"), std::string::npos);
   for (const char* path : {"", ".", "parts[0]", "parts[0].", "parts[0].skew.x", "parts[-1].skew", "parts[00].skew"}) {
     EXPECT_NE(asked(path), "no complaint") << path;

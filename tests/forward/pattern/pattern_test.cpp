@@ -76,6 +76,23 @@ TEST(Pattern, AnotherInstanceIsAnotherSurfaceOfTheSameTexture) {
   }
 }
 
+TEST(Pattern, APhaseMovesItByThatPartOfItsPeriod) {
+  const Grid grid = square_grid(32, 5.0);
+  const Sinusoid sinusoid{.wavelength_u = 80.0_um, .wavelength_v = 50.0_um, .direction = 90.0_deg};
+  Sinusoid moved = sinusoid;
+  moved.phase_u = 0.25;
+  moved.phase_v = 0.5;
+  // u runs along y, and v against x.
+  const HeightField by_phase = synthesize(moved, grid), by_place = synthesize(sinusoid, grid, {-25.0_um, 20.0_um});
+  const Ridges ridges{.wavelength = 80.0_um, .skew = 0.3, .phase = 0.25}, still{.wavelength = 80.0_um, .skew = 0.3};
+  const HeightField also = synthesize(ridges, grid), again = synthesize(still, grid, {20.0_um, 0.0_um});
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    EXPECT_NEAR(by_phase.heights_um()[i], by_place.heights_um()[i], 1e-5);
+    EXPECT_NEAR(also.heights_um()[i], again.heights_um()[i], 1e-5);
+  }
+  EXPECT_THROW(require_valid(Ridges{.phase = 1.5}), InvalidInput);
+}
+
 TEST(Pattern, RefusesValuesWithoutMeaning) {
   EXPECT_THROW(require_valid(Noise{.scale = -1.0_um}), InvalidInput);
   EXPECT_THROW(require_valid(Noise{.stretch = 0.5}), InvalidInput);
