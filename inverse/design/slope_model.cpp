@@ -1,8 +1,10 @@
 #include "inverse/design/slope_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <numeric>
 
 #include <tbb/parallel_for.h>
 
@@ -18,18 +20,36 @@ const PatchOptions& checked(const PatchOptions& patch, const std::vector<std::ui
   return patch;
 }
 
-SlopeCovariance covariance_about_mean(const ReliefSlopes& slopes) {
-  double x = 0.0, y = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
-  for (std::size_t i = 0; i < slopes.x.size(); ++i) {
-    const double p = slopes.x[i], q = slopes.y[i];
-    x += p;
-    y += q;
-    xx += p * p;
-    yy += q * q;
-    xy += p * q;
+// Sums of slopes and of their products, some at a time: each has sums of its own, so that none waits for another.
+struct SlopeSums {
+  static constexpr std::size_t lanes = 8;
+  using Lanes = std::array<double, lanes>;
+  Lanes x{}, y{}, xx{}, yy{}, xy{};
+
+  void add(const float* slopes_x, const float* slopes_y, std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) {
+      const double p = slopes_x[k], q = slopes_y[k];
+      x[k] += p;
+      y[k] += q;
+      xx[k] += p * p;
+      yy[k] += q * q;
+      xy[k] += p * q;
+    }
   }
-  const auto n = static_cast<double>(slopes.x.size());
-  return {xx / n - x * x / (n * n), yy / n - y * y / (n * n), xy / n - x * y / (n * n)};
+  static double total(const Lanes& sums) { return std::accumulate(sums.begin(), sums.end(), 0.0); }
+};
+
+SlopeCovariance covariance_about_mean(const ReliefSlopes& slopes) {
+  SlopeSums sums;
+  const std::size_t points = slopes.x.size();
+  std::size_t i = 0;
+  for (; i + SlopeSums::lanes <= points; i += SlopeSums::lanes)
+    sums.add(slopes.x.data() + i, slopes.y.data() + i, SlopeSums::lanes);
+  sums.add(slopes.x.data() + i, slopes.y.data() + i, points - i);
+  const auto n = static_cast<double>(points);
+  const double x = SlopeSums::total(sums.x) / n, y = SlopeSums::total(sums.y) / n;
+  return {SlopeSums::total(sums.xx) / n - x * x, SlopeSums::total(sums.yy) / n - y * y,
+          SlopeSums::total(sums.xy) / n - x * y};
 }
 
 }  // namespace
