@@ -41,8 +41,8 @@ HWY_INLINE Vector inverse_root(Vector x) {
   return hn::Mul(guess, hn::Sub(number(1.5), off));
 }
 
-// A facet with slopes p, q as the light meets it: s = n·(ω_i·m) and k = 2 s/n², both 0 where it is turned away from the
-// light or sends it downward.
+// A facet with slopes p, q as the light meets it: s = n·(ω_i·m) and k = 2 s/n², both 0 where it is turned away from
+// the light or sends it downward.
 struct Facet {
   Vector p, q, inverse_n, s, k;
 };
