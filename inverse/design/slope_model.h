@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "forward/pattern/pattern.h"
+#include "forward/process/print_process.h"
+#include "inverse/design/printed_texture.h"
+#include "inverse/objective/smooth_lobe.h"
+#include "inverse/target/lobe_target.h"
+
+namespace mezzotint {
+
+/// What a printed pattern shows by its slopes alone: the model that a search asks at every step.
+///
+/// Method   pattern → gray (continuous) → light → slopes of the cured relief at points → their covariance, and the
+/// light
+///          that they reflect, in soft bins; the mean over some draws of the pattern, the same ones at every step
+///          (common random numbers). The printer's ground comes in by its mean over all draws: its variance is added to
+///          the slopes', and the lobes are scattered by it. Draws of it would be learned by heart.
+/// Leaves out  shadows, further reflections, the printer's rounding to gray levels.
+/// Threads  the same bits with any number of them.
+class SlopeModel {
+public:
+  /// @param lobes  the light and the bins of the maps; nullopt: no maps are made
+  /// @throws InvalidInput for a patch out of range, or no seed.
+  SlopeModel(const PrinterProfile& printer, const PatchOptions& patch, std::vector<std::uint64_t> seeds,
+             const std::optional<LobeTarget>& lobes);
+
+  struct Shown {
+    SlopeCovariance covariance;      ///< of the slopes about each draw's mean, the ground's included
+    std::vector<DirectionMap> maps;  ///< one a direction of the light
+  };
+  /// Mean over the draws.
+  [[nodiscard]] Shown shown(const Pattern& pattern) const;
+  /// Each draw by itself, in the order of the seeds.
+  [[nodiscard]] std::vector<Shown> draws(const Pattern& pattern) const;
+
+  [[nodiscard]] std::size_t draw_count() const { return seeds_.size(); }
+  /// Light samples of one evaluation over all draws: what an evaluation costs, up to a factor.
+  [[nodiscard]] double samples() const;
+
+private:
+  [[nodiscard]] ReliefSlopes printed_slopes(const Pattern& pattern, std::uint64_t seed) const;
+  [[nodiscard]] Shown shown_by(const ReliefSlopes& slopes) const;
+
+  PrinterProfile printer_;
+  PatchOptions patch_;
+  std::vector<std::uint64_t> seeds_;
+  PrintProcess process_;
+  double ground_rms_slope_ = 0.0;
+  std::optional<SmoothGrid> grid_;
+  std::vector<SmoothLobe> lobes_;  // one a direction of the light
+  std::vector<double> variances_;  // of the ground's scatter, in squared bins, the same way
+};
+
+/// The mean of some draws, each counting alike.
+[[nodiscard]] SlopeModel::Shown mean_of(const std::vector<SlopeModel::Shown>& draws);
+
+}  // namespace mezzotint
