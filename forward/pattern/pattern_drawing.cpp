@@ -278,10 +278,14 @@ void add(std::vector<float>& a, const std::vector<float>& b) {
 Drawing draw(const PatternSum& sum, const PatternPlace& place, const SteepHeight& whole) {
   Drawing drawing = blank(place, 0.0F);
   for (std::size_t part = 0; part < sum.parts.size(); ++part) {
-    const Drawing own = draw_scaled(sum.parts[part].pattern, place, "sum", part, whole);
+    Drawing own = draw_scaled(sum.parts[part].pattern, place, "sum", part, whole);
     add(drawing.gray, own.gray);
     for (std::size_t k = 0; k < own.slopes.size(); ++k) {
-      if (!own.slopes[k].empty()) add(drawing.toward(k), own.slopes[k]);
+      if (own.slopes[k].empty()) continue;
+      if (drawing.slopes[k].empty())
+        drawing.slopes[k] = std::move(own.slopes[k]);
+      else
+        add(drawing.slopes[k], own.slopes[k]);
     }
   }
   return drawing;

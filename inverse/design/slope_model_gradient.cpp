@@ -14,7 +14,7 @@ namespace {
 struct Printed {
   HeightDerivatives heights;
   GrayImage gray = {};
-  ReliefSlopes slopes = {};
+  PrintedSlopes relief = {};
 };
 
 // ∂J/∂slope of what the covariance of a draw's slopes about their mean adds.
@@ -61,8 +61,8 @@ double SlopeModel::figure_with_slopes(const Pattern& pattern, std::span<const st
   tbb::parallel_for(std::size_t{0}, seeds_.size(), [&](std::size_t i) {
     Printed draw{pixel_heights_with_derivatives(draw_instance(pattern, seeds_[i]), printer_, patch_.pixels, names)};
     draw.gray = expose(draw.heights.heights, printer_).image;
-    draw.slopes = process_.slopes(draw.gray);
-    draws[i] = shown_by(draw.slopes);
+    draw.relief = process_.printed_slopes(draw.gray);
+    draws[i] = shown_by(draw.relief.slopes);
     printed[i] = std::move(draw);
   });
   const Shown shown = mean_of(draws);
@@ -75,8 +75,9 @@ double SlopeModel::figure_with_slopes(const Pattern& pattern, std::span<const st
   std::vector<std::vector<double>> of_draws(seeds_.size(), std::vector<double>(names.size()));
   const double share = 1.0 / static_cast<double>(seeds_.size());
   tbb::parallel_for(std::size_t{0}, seeds_.size(), [&](std::size_t i) {
-    const Printed& draw = *printed[i];
-    const std::vector<float> toward_gray = process_.gray_slopes(draw.gray, slopes_toward(draw.slopes, toward, share));
+    Printed draw = std::move(*printed[i]);
+    ReliefSlopes toward_slopes = slopes_toward(draw.relief.slopes, toward, share);
+    const std::vector<float> toward_gray = process_.gray_slopes(std::move(draw.relief), std::move(toward_slopes));
     const std::vector<float> toward_heights = wanted_height_slopes(draw.heights.heights, printer_, toward_gray);
     for (std::size_t k = 0; k < names.size(); ++k) of_draws[i][k] = dot(toward_heights, draw.heights.toward[k]);
   });
