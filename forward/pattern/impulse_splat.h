@@ -28,7 +28,15 @@ struct SampleRows {
 };
 inline constexpr std::size_t widest_vector = 16;
 
-/// Adds weight·(headroom − 4 |p − p_j|²)³ to the samples within the reach of each impulse (impulse_splat.cpp).
-void splat_impulses(const PlaneImpulses& impulses, const SampleRows& rows, float* sums);
+/// Sums a sample, each `stride` a row. With t = columns and s = rows from an impulse and f = headroom − 4 |p − p_j|²:
+struct SplatSums {
+  float* values;             ///< Σ weight·f³
+  float* columns = nullptr;  ///< Σ weight·f²·t; null, like `rows`, where no gradient is wanted
+  float* rows = nullptr;     ///< Σ weight·f²·s
+};
+
+/// Adds to the samples within the reach of each impulse (impulse_splat.cpp). The values have the same bits with a
+/// gradient and without.
+void splat_impulses(const PlaneImpulses& impulses, const SampleRows& rows, const SplatSums& sums);
 
 }  // namespace mezzotint

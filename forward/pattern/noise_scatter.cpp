@@ -50,14 +50,23 @@ struct GridMap {
   }
 };
 
+// Where the noise goes.
+struct Fields {
+  std::span<float> values, toward_u, toward_v;
+
+  [[nodiscard]] bool with_gradient() const { return !toward_u.empty(); }
+};
+
 // Some rows of the grid, and what the noise is on them.
 class Band {
 public:
-  Band(const GridMap& map, std::size_t columns, std::size_t first_row, std::size_t end_row)
+  Band(const GridMap& map, std::size_t columns, std::size_t first_row, std::size_t end_row, bool with_gradient)
       : map_(map),
         rows_(map.sample_rows(columns, end_row - first_row)),
         first_row_(first_row),
-        sums_(rows_.rows * rows_.stride, 0.0F) {
+        size_(rows_.rows * rows_.stride),
+        sums_((with_gradient ? 3 : 1) * size_, 0.0F),
+        into_{sums_.data(), with_gradient ? &sums_[size_] : nullptr, with_gradient ? &sums_[2 * size_] : nullptr} {
     const auto low = static_cast<double>(first_row), high = static_cast<double>(end_row - 1);
     const auto last = static_cast<double>(columns - 1);
     corners_ = {map_.at(0.0, low), map_.at(last, low), map_.at(last, high), map_.at(0.0, high)};
@@ -75,15 +84,30 @@ public:
     }
   }
 
-  void add_to(std::span<float> values, float amplitude) const {
+  void add_to(const Fields& fields, float amplitude) const {
     for (std::size_t row = 0; row < rows_.rows; ++row) {
-      const float* sums = &sums_[row * rows_.stride];
-      float* into = &values[(first_row_ + row) * rows_.columns];
+      const float* sums = &into_.values[row * rows_.stride];
+      float* into = &fields.values[(first_row_ + row) * rows_.columns];
       for (std::size_t column = 0; column < rows_.columns; ++column) into[column] += amplitude * sums[column];
     }
+    if (!fields.with_gradient()) return;
+    add_gradient(fields.toward_u, amplitude, map_.column_u, map_.row_u);
+    add_gradient(fields.toward_v, amplitude, map_.column_v, map_.row_v);
   }
 
 private:
+  // ∂f³/∂u = 3f²·(−8)·(u − u_j), where u − u_j is so much a column and so much a row.
+  void add_gradient(std::span<float> toward, float amplitude, double a_column, double a_row) const {
+    const auto by_column = static_cast<float>(-24.0 * a_column) * amplitude,
+               by_row = static_cast<float>(-24.0 * a_row) * amplitude;
+    for (std::size_t row = 0; row < rows_.rows; ++row) {
+      const float *columns = &into_.columns[row * rows_.stride], *rows = &into_.rows[row * rows_.stride];
+      float* into = &toward[(first_row_ + row) * rows_.columns];
+      for (std::size_t column = 0; column < rows_.columns; ++column)
+        into[column] += by_column * columns[column] + by_row * rows[column];
+    }
+  }
+
   // The u of the band's points with v in an interval: corners in it, and edges that cross its ends.
   [[nodiscard]] Span u_between(double v_low, double v_high) const {
     Span span{HUGE_VAL, -HUGE_VAL};
@@ -106,7 +130,7 @@ private:
       lattice.impulses(x, y, level, drawn_);
       collect(static_cast<double>(x), static_cast<double>(y), static_cast<double>(level) - z);
     }
-    splat_impulses(found_, rows_, sums_.data());
+    splat_impulses(found_, rows_, into_);
   }
 
   void collect(double x, double y, double z) {
@@ -128,7 +152,9 @@ private:
   const GridMap& map_;
   SampleRows rows_;
   std::size_t first_row_;
+  std::size_t size_;
   std::vector<float> sums_;
+  SplatSums into_;
   std::array<std::array<double, 2>, 4> corners_{};
   CellImpulses drawn_{};
   PlaneImpulses found_{};
@@ -146,12 +172,17 @@ void require_within_lattice(const GridMap& map, const Grid& grid) {
   }
 }
 
-void gather(std::span<float> values, const Grid& grid, const GridMap& map, const NoiseLattice& lattice, double z,
+void gather(const Fields& fields, const Grid& grid, const GridMap& map, const NoiseLattice& lattice, double z,
             double amplitude) {
   tbb::parallel_for(std::size_t{0}, grid.rows, [&](std::size_t row) {
     for (std::size_t column = 0; column < grid.columns; ++column) {
       const auto [u, v] = map.at(static_cast<double>(column), static_cast<double>(row));
-      values[row * grid.columns + column] += static_cast<float>(amplitude * sparse_noise(lattice, u, v, z));
+      const std::size_t at = row * grid.columns + column;
+      fields.values[at] += static_cast<float>(amplitude * sparse_noise(lattice, u, v, z));
+      if (!fields.with_gradient()) continue;
+      const auto [along_u, along_v] = sparse_noise_gradient(lattice, u, v, z);
+      fields.toward_u[at] += static_cast<float>(amplitude * along_u);
+      fields.toward_v[at] += static_cast<float>(amplitude * along_v);
     }
   });
 }
@@ -159,16 +190,17 @@ void gather(std::span<float> values, const Grid& grid, const GridMap& map, const
 }  // namespace
 
 void add_sparse_noise(std::span<float> values, const Grid& grid, const PatternMap& map, const NoiseLattice& lattice,
-                      double z, double amplitude) {
+                      double z, double amplitude, std::span<float> toward_u, std::span<float> toward_v) {
+  const Fields fields{values, toward_u, toward_v};
   const GridMap grid_map(map, grid);
   require_within_lattice(grid_map, grid);
-  if (std::abs(grid_map.determinant) > finest_scattered) return gather(values, grid, grid_map, lattice, z, amplitude);
+  if (std::abs(grid_map.determinant) > finest_scattered) return gather(fields, grid, grid_map, lattice, z, amplitude);
   const auto factor = static_cast<float>(amplitude * noise_normalisation());
   tbb::parallel_for(std::size_t{0}, (grid.rows + band_rows - 1) / band_rows, [&](std::size_t index) {
     const std::size_t first = index * band_rows;
-    Band band(grid_map, grid.columns, first, std::min(first + band_rows, grid.rows));
+    Band band(grid_map, grid.columns, first, std::min(first + band_rows, grid.rows), fields.with_gradient());
     band.scatter(lattice, z);
-    band.add_to(values, factor);
+    band.add_to(fields, factor);
   });
 }
 

@@ -32,6 +32,18 @@ OctaveSum octave_sum(const FractionalBrownianMotion& motion) {
   return sum;
 }
 
+// weight_i = a_i/√Σa², a_i = ℓ^(−H i): with ln a_i = −H i ln ℓ, ∂ln weight_i = ∂ln a_i − Σ weight²·∂ln a.
+WeightSlopes weight_slopes(const FractionalBrownianMotion& motion, int octave) {
+  const OctaveSum sum = octave_sum(motion);
+  double mean = 0.0;
+  for (int i = 0; i < motion.octaves; ++i) {
+    const double weight = sum.octaves[static_cast<std::size_t>(i)].weight;
+    mean += weight * weight * i;
+  }
+  const double coarser = mean - octave;
+  return {coarser * std::log(motion.lacunarity), coarser * motion.hurst / motion.lacunarity};
+}
+
 OctaveSum octave_sum(const Turbulence& turbulence) {
   OctaveSum sum;
   sum.offset = 0.0;

@@ -27,4 +27,10 @@ struct OctaveSum {
 [[nodiscard]] OctaveSum octave_sum(const FractionalBrownianMotion& motion);
 [[nodiscard]] OctaveSum octave_sum(const Turbulence& turbulence);
 
+/// How an octave's weight grows with H and with ℓ, relatively: ∂ln weight/∂H and ∂ln weight/∂ℓ.
+struct WeightSlopes {
+  double toward_hurst = 0.0, toward_lacunarity = 0.0;
+};
+[[nodiscard]] WeightSlopes weight_slopes(const FractionalBrownianMotion& motion, int octave);
+
 }  // namespace mezzotint

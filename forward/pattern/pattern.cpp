@@ -81,13 +81,8 @@ Length height_of(const Pattern& pattern) {
 HeightField synthesize(const Pattern& pattern, const Grid& grid, const Position& origin, Continuation continuation) {
   require_valid(pattern);
   require_valid_grid(grid);
-  const std::vector<float> gray = draw_gray(with_independent_parts(pattern), sheet_of(grid, origin, continuation));
-  HeightField field(grid, continuation);
-  const double height_um = height_of(pattern).um();
-  std::ranges::transform(gray, field.heights_um().begin(), [height_um](float value) {
-    return static_cast<float>(height_um * static_cast<double>(value));
-  });
-  return field;
+  const Sheet sheet = sheet_of(grid, origin, continuation);
+  return heights_of(draw_gray(with_independent_parts(pattern), sheet), pattern, grid, continuation);
 }
 
 double periodic_change(const Pattern& pattern, const Grid& grid) {

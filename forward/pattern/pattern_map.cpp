@@ -46,6 +46,14 @@ PatternMap moved(PatternMap map, double u, double v) {
   return map;
 }
 
+PatternMap scaled(const PatternMap& map, double u, double v) {
+  return {u * map.ux, u * map.uy, v * map.vx, v * map.vy, u * map.u0, v * map.v0};
+}
+
+PatternMap sum(const PatternMap& a, const PatternMap& b) {
+  return {a.ux + b.ux, a.uy + b.uy, a.vx + b.vx, a.vy + b.vy, a.u0 + b.u0, a.v0 + b.v0};
+}
+
 PatternMap fitted(PatternMap map, const Sheet& sheet) {
   if (sheet.continuation != Continuation::Periodic) return map;
   const PatternMap wanted = map;

@@ -28,6 +28,12 @@ struct PatternMap {
 
 /// The map with so much added to u and v.
 [[nodiscard]] PatternMap moved(PatternMap map, double u, double v);
+/// The map with u and v multiplied by these.
+[[nodiscard]] PatternMap scaled(const PatternMap& map, double u, double v);
+[[nodiscard]] PatternMap sum(const PatternMap& a, const PatternMap& b);
+
+/// What maps every point to (0, 0): a change that is none.
+inline constexpr PatternMap no_map{0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
 
 /// Where a pattern is drawn.
 struct Sheet {

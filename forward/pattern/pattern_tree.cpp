@@ -56,8 +56,8 @@ void draw_part(Pattern& pattern, std::uint64_t seed, std::uint64_t place) {
 }
 
 template <typename Kind>
-PatternMap stretched_map(const Kind& kind, const Sheet& sheet) {
-  return in_units(turned(sheet.place, kind.direction), kind.scale.um(), kind.scale.um() * kind.stretch);
+Units stretched(const Kind& kind) {
+  return {kind.scale.um(), kind.scale.um() * kind.stretch};
 }
 
 }  // namespace
@@ -83,20 +83,18 @@ Sheet sheet_below(const TurnedPattern& pattern, Sheet sheet) {
   return sheet;
 }
 
-PatternMap map_of(const Noise& noise, const Sheet& sheet) { return stretched_map(noise, sheet); }
-PatternMap map_of(const FractionalBrownianMotion& motion, const Sheet& sheet) { return stretched_map(motion, sheet); }
-PatternMap map_of(const Turbulence& turbulence, const Sheet& sheet) { return stretched_map(turbulence, sheet); }
-PatternMap map_of(const LineIntegralConvolution& lines, const Sheet& sheet) {
-  return in_units(turned(sheet.place, lines.direction), lines.scale.um(), lines.scale.um());
-}
+Units units_of(const Noise& noise) { return stretched(noise); }
+Units units_of(const FractionalBrownianMotion& motion) { return stretched(motion); }
+Units units_of(const Turbulence& turbulence) { return stretched(turbulence); }
+Units units_of(const LineIntegralConvolution& lines) { return {lines.scale.um(), lines.scale.um()}; }
+Units units_of(const Sinusoid& sinusoid) { return {sinusoid.wavelength_u.um(), sinusoid.wavelength_v.um()}; }
+Units units_of(const Ridges& ridges) { return {ridges.wavelength.um(), ridges.wavelength.um()}; }
+
 PatternMap map_of(const Sinusoid& sinusoid, const Sheet& sheet) {
-  const PatternMap map =
-      in_units(turned(sheet.place, sinusoid.direction), sinusoid.wavelength_u.um(), sinusoid.wavelength_v.um());
-  return moved(map, sinusoid.phase_u, sinusoid.phase_v);
+  return moved(map_without_phase(sinusoid, sheet.place), sinusoid.phase_u, sinusoid.phase_v);
 }
 PatternMap map_of(const Ridges& ridges, const Sheet& sheet) {
-  const double wavelength_um = ridges.wavelength.um();
-  return moved(in_units(turned(sheet.place, ridges.direction), wavelength_um, wavelength_um), ridges.phase, 0.0);
+  return moved(map_without_phase(ridges, sheet.place), ridges.phase, 0.0);
 }
 PatternMap map_of(const PatternRegions& regions, const Sheet& sheet) {
   PatternMap map = sheet.place;

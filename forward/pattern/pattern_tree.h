@@ -30,11 +30,29 @@ template <typename Kind>
   return sheet;
 }
 
-/// The map from the sheet's µm to a kind's own units, for its coarsest octave and before it is fitted to a tile.
-[[nodiscard]] PatternMap map_of(const Noise& noise, const Sheet& sheet);
-[[nodiscard]] PatternMap map_of(const FractionalBrownianMotion& motion, const Sheet& sheet);
-[[nodiscard]] PatternMap map_of(const Turbulence& turbulence, const Sheet& sheet);
-[[nodiscard]] PatternMap map_of(const LineIntegralConvolution& lines, const Sheet& sheet);
+/// The units of a kind's u and v in µm, for its coarsest octave.
+struct Units {
+  double u, v;
+};
+[[nodiscard]] Units units_of(const Noise& noise);
+[[nodiscard]] Units units_of(const FractionalBrownianMotion& motion);
+[[nodiscard]] Units units_of(const Turbulence& turbulence);
+[[nodiscard]] Units units_of(const LineIntegralConvolution& lines);
+[[nodiscard]] Units units_of(const Sinusoid& sinusoid);
+[[nodiscard]] Units units_of(const Ridges& ridges);
+
+/// The map from the plane's µm to a kind's own units, for its coarsest octave and before it is fitted to a tile. Linear
+/// in `place`.
+template <typename Kind>
+[[nodiscard]] PatternMap map_without_phase(const Kind& kind, const PatternMap& place) {
+  const Units units = units_of(kind);
+  return in_units(turned(place, kind.direction), units.u, units.v);
+}
+template <typename Kind>
+[[nodiscard]] PatternMap map_of(const Kind& kind, const Sheet& sheet) requires requires {
+  units_of(kind);
+}
+{ return map_without_phase(kind, sheet.place); }
 [[nodiscard]] PatternMap map_of(const Sinusoid& sinusoid, const Sheet& sheet);
 [[nodiscard]] PatternMap map_of(const Ridges& ridges, const Sheet& sheet);
 /// In pictures, which repeat.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "forward/pattern/noise_lattice.h"
@@ -17,6 +18,9 @@ namespace mezzotint {
 /// Source   Frisvad 2019, slide "Noise"; Lewis, "Algorithms for solid noise synthesis", SIGGRAPH 1989.
 [[nodiscard]] double sparse_noise(double x, double y, double z, std::uint64_t seed, CellHash hash = CellHash::Integer);
 [[nodiscard]] double sparse_noise(const NoiseLattice& lattice, double x, double y, double z);
+
+/// ∂noise/∂x and ∂noise/∂y.
+[[nodiscard]] std::array<double, 2> sparse_noise_gradient(const NoiseLattice& lattice, double x, double y, double z);
 
 /// Means over a cell of noise² and of |∇noise|² in a plane (closed forms for N = 30), and the same on the
 /// lattice plane z = 0, where the noise is not stationary.

@@ -13,6 +13,10 @@ namespace mezzotint {
 
 namespace {
 
+void add_scaled(float* __restrict out, std::size_t count, WeightedRow row) {
+  for (std::size_t i = 0; i < count; ++i) out[i] += row.weight * row.values[i];
+}
+
 std::vector<float> padded(const float* pixels, std::size_t count, int reach, Surround surround) {
   std::vector<float> values(count + 2 * static_cast<std::size_t>(reach), 0.0F);
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -20,20 +24,6 @@ std::vector<float> padded(const float* pixels, std::size_t count, int reach, Sur
     if (source) values[i] = pixels[*source];
   }
   return values;
-}
-
-// out(pixel) = Σ over the samples that it gives light to; sample(s, i) is the one of phase s in pixel i.
-template <class Sample, class Add>
-void gather(std::size_t count, Surround surround, const std::vector<PixelTaps>& taps, const Sample& sample,
-            const Add& add) {
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t s = 0; s < taps.size(); ++s) {
-      for (std::size_t k = 0; k < taps[s].weights.size(); ++k) {
-        const auto pixel = pixel_at(static_cast<std::int64_t>(i + k) + taps[s].first, count, surround);
-        if (pixel) add(*pixel, taps[s].weights[k], sample(s, i));
-      }
-    }
-  }
 }
 
 }  // namespace
@@ -113,15 +103,33 @@ GrayImage GaussianSpread::gather_rows(const GrayImage& samples, const Taps& taps
   constexpr std::size_t strip = 256;
   tbb::parallel_for(std::size_t{0}, (width_ + strip - 1) / strip, [&](std::size_t index) {
     const std::size_t start = index * strip, length = std::min(strip, width_ - start);
-    const auto sample = [&](std::size_t s, std::size_t row) {
-      return samples.values.data() + (row * options_.subsamples + s) * width_ + start;
-    };
-    gather(rows_, options_.surround, taps, sample, [&](std::size_t row, float weight, const float* values) {
-      float* const out = gathered.values.data() + row * width_ + start;
-      for (std::size_t i = 0; i < length; ++i) out[i] += weight * values[i];
-    });
+    for (std::size_t row = 0; row < rows_; ++row) {
+      for (std::size_t s = 0; s < taps.size(); ++s) {
+        const float* const values = samples.values.data() + (row * options_.subsamples + s) * width_ + start;
+        for (std::size_t k = 0; k < taps[s].weights.size(); ++k) {
+          const auto pixel = pixel_at(static_cast<std::int64_t>(row + k) + taps[s].first, rows_, options_.surround);
+          if (pixel) add_scaled(gathered.values.data() + *pixel * width_ + start, length, {values, taps[s].weights[k]});
+        }
+      }
+    }
   });
   return gathered;
+}
+
+// The transposed of widen_row: every phase on its own onto contiguous pixels, some of them beyond the edges.
+void GaussianSpread::narrow_row(const float* samples, const Taps& taps, float* pixels) const {
+  const int reach = std::max(-taps.front().first, taps.back().first + static_cast<int>(taps.back().weights.size()));
+  std::vector<float> sums(columns_ + 2 * static_cast<std::size_t>(reach), 0.0F), phase_row(columns_);
+  for (std::size_t s = 0; s < taps.size(); ++s) {
+    for (std::size_t i = 0; i < columns_; ++i) phase_row[i] = samples[i * taps.size() + s];
+    for (std::size_t k = 0; k < taps[s].weights.size(); ++k) {
+      add_scaled(sums.data() + reach + taps[s].first + k, columns_, {phase_row.data(), taps[s].weights[k]});
+    }
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const auto pixel = pixel_at(static_cast<std::int64_t>(i) - reach, columns_, options_.surround);
+    if (pixel) pixels[*pixel] += sums[i];
+  }
 }
 
 GrayImage GaussianSpread::transposed(const GrayImage& samples, LightPart part) const {
@@ -130,11 +138,7 @@ GrayImage GaussianSpread::transposed(const GrayImage& samples, LightPart part) c
   const GrayImage gathered = gather_rows(samples, along_y);
   GrayImage pixels{columns_, rows_, std::vector<float>(columns_ * rows_, 0.0F)};
   tbb::parallel_for(std::size_t{0}, rows_, [&](std::size_t row) {
-    const float* const values = gathered.values.data() + row * width_;
-    float* const out = pixels.values.data() + row * columns_;
-    const auto sample = [&](std::size_t s, std::size_t column) { return values[column * options_.subsamples + s]; };
-    gather(columns_, options_.surround, along_x, sample,
-           [out](std::size_t column, float weight, float value) { out[column] += weight * value; });
+    narrow_row(gathered.values.data() + row * width_, along_x, pixels.values.data() + row * columns_);
   });
   return pixels;
 }

@@ -39,6 +39,7 @@ private:
   [[nodiscard]] Wide widen(const GrayImage& image, const Taps& taps) const;
   void widen_row(const float* pixels, const Taps& taps, float* out) const;
   void sample_row(const Wide& wide, std::size_t row, const PixelTaps& taps, float* out) const;
+  void narrow_row(const float* samples, const Taps& taps, float* pixels) const;
   [[nodiscard]] GrayImage gather_rows(const GrayImage& samples, const Taps& taps) const;
   [[nodiscard]] Taps taps_x(TapKind kind) const;
   [[nodiscard]] Taps taps_y(TapKind kind) const;

@@ -138,46 +138,54 @@ ProfileSlopes PrintProcess::profile_slopes(const GrayImage& image, std::span<con
   return sum;
 }
 
-ReliefSlopes PrintProcess::slopes(const GrayImage& image) const {
+PrintedSlopes PrintProcess::printed_slopes(const GrayImage& image) const {
   const Parts& parts = *parts_;
   parts.require_image(image);
-  const GrayImage light = parts.light(image, LightPart::Value);
-  ReliefSlopes slopes{parts.light(image, LightPart::SlopeX).values, parts.light(image, LightPart::SlopeY).values};
+  PrintedSlopes printed{parts.light(image, LightPart::Value),
+                        {parts.light(image, LightPart::SlopeX).values, parts.light(image, LightPart::SlopeY).values}};
+  ReliefSlopes& slopes = printed.slopes;
   const MovingLight moving = moving_light(parts.profile);
   const CureCurve& curve = parts.profile.cure;
   const auto steepness = static_cast<float>(curve.beta / parts.profile.pixel_pitch);
   const auto gamma = static_cast<float>(curve.gamma);
-  for (std::size_t i = 0; i < light.values.size(); ++i) {
-    const float gray = light.values[i];
+  for (std::size_t i = 0; i < slopes.x.size(); ++i) {
+    const float gray = printed.light.values[i];
     const bool moves = gray > moving.from && gray < moving.to;
     const float factor = moves ? steepness / (gray - gamma) : 0.0F;
     slopes.x[i] *= factor;
     slopes.y[i] *= factor;
   }
-  return slopes;
+  return printed;
 }
 
+ReliefSlopes PrintProcess::slopes(const GrayImage& image) const { return printed_slopes(image).slopes; }
+
 // z_x = β I_x/(I − γ): toward I_x by β/(I − γ), toward I by −z_x/(I − γ).
-std::vector<float> PrintProcess::gray_slopes(const GrayImage& image, const ReliefSlopes& toward) const {
+std::vector<float> PrintProcess::gray_slopes(PrintedSlopes printed, ReliefSlopes toward) const {
   const Parts& parts = *parts_;
-  GrayImage light = parts.checked_light(image, toward.x);
-  require(toward.y.size() == toward.x.size(), "one slope a sample of the printed relief is needed");
-  GrayImage light_x = parts.light(image, LightPart::SlopeX), light_y = parts.light(image, LightPart::SlopeY);
+  require(toward.x.size() == printed.light.values.size() && toward.y.size() == toward.x.size(),
+          "one slope a sample of the printed relief is needed");
   const MovingLight moving = moving_light(parts.profile);
   const auto steepness = static_cast<float>(parts.profile.cure.beta / parts.profile.pixel_pitch);
   const auto gamma = static_cast<float>(parts.profile.cure.gamma);
-  for (std::size_t i = 0; i < light.values.size(); ++i) {
-    const float gray = light.values[i];
+  for (std::size_t i = 0; i < toward.x.size(); ++i) {
+    const float gray = printed.light.values[i];
     const bool moves = gray > moving.from && gray < moving.to;
     const float per_dose = moves ? 1.0F / (gray - gamma) : 0.0F, factor = steepness * per_dose;
-    light.values[i] = -factor * per_dose * (toward.x[i] * light_x.values[i] + toward.y[i] * light_y.values[i]);
-    light_x.values[i] = factor * toward.x[i];
-    light_y.values[i] = factor * toward.y[i];
+    printed.light.values[i] = -per_dose * (toward.x[i] * printed.slopes.x[i] + toward.y[i] * printed.slopes.y[i]);
+    toward.x[i] *= factor;
+    toward.y[i] *= factor;
   }
-  std::vector<float> slopes = parts.back(light, LightPart::Value);
-  const std::vector<float> by_x = parts.back(light_x, LightPart::SlopeX), by_y = parts.back(light_y, LightPart::SlopeY);
+  const std::size_t columns = printed.light.columns, rows = printed.light.rows;
+  const std::vector<float> by_x = parts.back({columns, rows, std::move(toward.x)}, LightPart::SlopeX),
+                           by_y = parts.back({columns, rows, std::move(toward.y)}, LightPart::SlopeY);
+  std::vector<float> slopes = parts.back(printed.light, LightPart::Value);
   for (std::size_t i = 0; i < slopes.size(); ++i) slopes[i] += by_x[i] + by_y[i];
   return slopes;
+}
+
+std::vector<float> PrintProcess::gray_slopes(const GrayImage& image, const ReliefSlopes& toward) const {
+  return gray_slopes(printed_slopes(image), toward);
 }
 
 std::vector<float> wanted_height_slopes(const HeightField& pixel_heights, const PrinterProfile& profile,

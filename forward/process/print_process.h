@@ -17,6 +17,12 @@ struct ProfileSlopes {
   double width_um = 0.0;  ///< ∂J/∂(width of the blur), a µm
 };
 
+/// A relief's slopes, with the light that made it: all that the way back needs.
+struct PrintedSlopes {
+  GrayImage light;  ///< at the samples
+  ReliefSlopes slopes;
+};
+
 /// The print of patches of one size: gray → light → cure height, with derivatives. What depends on the size and the
 /// profile only is made once, so that a search prints as often as it wants. Safe to use from several threads.
 ///
@@ -50,6 +56,10 @@ public:
 
   /// From ∂J/∂(slopes of the relief) to ∂J/∂(gray value): the adjoint of `slopes`.
   [[nodiscard]] std::vector<float> gray_slopes(const GrayImage& image, const ReliefSlopes& toward) const;
+
+  /// Both for an image that goes there and back: the way back costs half as much.
+  [[nodiscard]] PrintedSlopes printed_slopes(const GrayImage& image) const;
+  [[nodiscard]] std::vector<float> gray_slopes(PrintedSlopes printed, ReliefSlopes toward) const;
 
 private:
   struct Parts;

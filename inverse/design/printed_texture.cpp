@@ -34,6 +34,17 @@ SlopeCovariance scaled(const SlopeCovariance& covariance, double factor) {
   return {covariance.xx * factor, covariance.yy * factor, covariance.xy * factor};
 }
 
+Grid pixel_grid(const PrinterProfile& printer, std::size_t pixels) {
+  return {pixels, pixels, printer.pixel_pitch, printer.pixel_pitch};
+}
+
+// To the top of what one layer reaches, and by how much.
+Length lift(HeightField& heights, const Pattern& pattern, const PrinterProfile& printer) {
+  const Length lift = std::max(Length{}, reachable_height(printer) - height_of(pattern));
+  for (float& z : heights.heights_um()) z += static_cast<float>(lift.um());
+  return lift;
+}
+
 // Before anything of its size is allocated.
 const PatchOptions& checked(const PatchOptions& patch) {
   require(patch.pixels >= 16 && patch.pixels <= 4096, "a patch has 16 to 4096 pixels a side");
@@ -43,11 +54,22 @@ const PatchOptions& checked(const PatchOptions& patch) {
 }  // namespace
 
 HeightField pixel_heights(const PatternInstance& instance, const PrinterProfile& printer, std::size_t pixels) {
-  const Length pitch = printer.pixel_pitch;
-  HeightField heights = synthesize(instance.pattern, {pixels, pixels, pitch, pitch}, instance.origin);
-  const Length lift = std::max(Length{}, reachable_height(printer) - height_of(instance.pattern));
-  for (float& z : heights.heights_um()) z += static_cast<float>(lift.um());
+  HeightField heights = synthesize(instance.pattern, pixel_grid(printer, pixels), instance.origin);
+  lift(heights, instance.pattern, printer);
   return heights;
+}
+
+HeightDerivatives pixel_heights_with_derivatives(const PatternInstance& instance, const PrinterProfile& printer,
+                                                 std::size_t pixels, std::span<const std::string> names) {
+  HeightDerivatives result =
+      synthesize_with_derivatives(instance.pattern, pixel_grid(printer, pixels), instance.origin, names);
+  if (lift(result.heights, instance.pattern, printer) == Length{}) return result;
+  // What the pattern grows by, it is lifted less.
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto less = static_cast<float>(result.of_height[k]);
+    for (float& slope : result.toward[k]) slope -= less;
+  }
+  return result;
 }
 
 PrintedTexture::PrintedTexture(const PrinterProfile& printer, const PatchOptions& patch,

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <string>
 #include <vector>
 
-#include "forward/pattern/pattern.h"
+#include "forward/pattern/pattern_derivatives.h"
 #include "forward/process/print_process.h"
 #include "forward/process/printer_profile.h"
 
@@ -23,6 +25,11 @@ struct PatchOptions {
 /// the gray levels are finest, and the dark threshold is far.
 [[nodiscard]] HeightField pixel_heights(const PatternInstance& instance, const PrinterProfile& printer,
                                         std::size_t pixels);
+
+/// The same with derivatives toward some of the pattern's numbers, the lift's included.
+[[nodiscard]] HeightDerivatives pixel_heights_with_derivatives(const PatternInstance& instance,
+                                                               const PrinterProfile& printer, std::size_t pixels,
+                                                               std::span<const std::string> names);
 
 /// A texture as it comes out of a printer: pattern → gray → light → cure height → ground noise.
 ///

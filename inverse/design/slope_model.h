@@ -1,13 +1,17 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "forward/pattern/pattern.h"
 #include "forward/process/print_process.h"
 #include "inverse/design/printed_texture.h"
 #include "inverse/objective/smooth_lobe.h"
+#include "inverse/search/minimize.h"
 #include "inverse/target/lobe_target.h"
 
 namespace mezzotint {
@@ -43,6 +47,16 @@ public:
   /// Each draw by itself, in the order of the seeds.
   [[nodiscard]] std::vector<Shown> draws(const Pattern& pattern) const;
 
+  /// A figure of what is shown, which also sets its slopes toward all of it (in the same order and shape).
+  using Figure = std::function<double(const Shown& shown, Shown& slopes)>;
+  /// The figure of the mean over the draws, and by the adjoint its slopes toward some of the pattern's numbers: through
+  /// lobes, covariance, cure curve, light and pattern, for the cost of about two evaluations more, however many numbers
+  /// there are (synthesize_with_derivatives says where patterns have edges).
+  /// @param names   of the numbers, by their paths
+  /// @param slopes  are set, one a name, in the unit that the name says
+  [[nodiscard]] double figure_with_slopes(const Pattern& pattern, std::span<const std::string> names,
+                                          const Figure& figure, std::vector<double>& slopes) const;
+
   [[nodiscard]] std::size_t draw_count() const { return seeds_.size(); }
   /// Light samples of one evaluation over all draws: what an evaluation costs, up to a factor.
   [[nodiscard]] double samples() const;
@@ -50,6 +64,7 @@ public:
 private:
   [[nodiscard]] ReliefSlopes printed_slopes(const Pattern& pattern, std::uint64_t seed) const;
   [[nodiscard]] Shown shown_by(const ReliefSlopes& slopes) const;
+  [[nodiscard]] ReliefSlopes slopes_toward(const ReliefSlopes& slopes, const Shown& toward, double share) const;
 
   PrinterProfile printer_;
   PatchOptions patch_;
@@ -62,6 +77,11 @@ private:
   std::vector<SmoothLobe> lobes_;  // one a direction of the light
   std::vector<double> variances_;  // of the ground's scatter, in squared bins, the same way
 };
+
+/// What minimize_with_slopes lowers: a figure of what a pattern shows, by the values of some of its numbers.
+/// @param model  must live as long as what is returned
+[[nodiscard]] SteepObjective steep_objective(const SlopeModel& model, Pattern pattern, std::vector<std::string> names,
+                                             SlopeModel::Figure figure);
 
 /// The mean of some draws, each counting alike.
 [[nodiscard]] SlopeModel::Shown mean_of(const std::vector<SlopeModel::Shown>& draws);

@@ -1,6 +1,7 @@
 #include "inverse/target/target.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
@@ -93,6 +94,29 @@ double covariance_distance(const SlopeCovariance& achieved, const Target& target
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> solver(
       matrix_of(achieved) + floor, matrix_of(covariance_of(target.slopes)), Eigen::EigenvaluesOnly);
   return solver.eigenvalues().array().max(least_variance).log().square().sum();
+}
+
+// An eigenvalue λ of C v = λ T v with vᵀ T v = 1 changes by vᵀ dC v. T is the target's covariance, or, where only the
+// two variances count, the unit matrix, with the wanted variances beside.
+CovarianceDistance covariance_distance_with_slopes(const SlopeCovariance& achieved, const Target& target) {
+  const SlopeAxes& wanted = target.slopes;
+  const double floor = target.rotation_matters ? least_variance : 0.0;
+  const Eigen::Matrix2d unit = Eigen::Matrix2d::Identity();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> solver(
+      matrix_of(achieved) + floor * unit, target.rotation_matters ? matrix_of(covariance_of(wanted)) : unit);
+  const std::array<double, 2> variances =
+      target.rotation_matters ? std::array{1.0, 1.0} : std::array{square(wanted.rms_minor), square(wanted.rms_major)};
+  CovarianceDistance result;
+  Eigen::Matrix2d toward = Eigen::Matrix2d::Zero();
+  for (int i = 0; i < 2; ++i) {
+    const double value = solver.eigenvalues()[i],
+                 off = std::log(std::max(value, least_variance) / variances[std::size_t(i)]);
+    result.value += square(off);
+    if (value > least_variance)
+      toward += 2.0 * off / value * solver.eigenvectors().col(i) * solver.eigenvectors().col(i).transpose();
+  }
+  result.slopes = {toward(0, 0), toward(1, 1), 2.0 * toward(0, 1)};
+  return result;
 }
 
 }  // namespace mezzotint

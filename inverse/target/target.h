@@ -51,4 +51,12 @@ struct TargetError {
 /// Source   Förstner & Moonen 1999, "A metric for covariance matrices".
 [[nodiscard]] double covariance_distance(const SlopeCovariance& achieved, const Target& target);
 
+/// The same, with its slopes toward the three numbers of the covariance. Where the rotation does not matter and both
+/// variances are equal, the distance has a kink, and the slopes are those of one of its sides.
+struct CovarianceDistance {
+  double value = 0.0;
+  SlopeCovariance slopes;  ///< ∂value/∂xx, ∂value/∂yy, ∂value/∂xy
+};
+[[nodiscard]] CovarianceDistance covariance_distance_with_slopes(const SlopeCovariance& achieved, const Target& target);
+
 }  // namespace mezzotint

@@ -46,6 +46,23 @@ TEST(NoiseScatter, IsTheNoisePointByPoint) {
   }
 }
 
+TEST(NoiseScatter, HasTheGradientPointByPointAndTheSameBitsWithIt) {
+  for (const double scale : {0.7, 4.0, 40.0, 700.0}) {
+    const PatternMap map = oblique(scale);
+    const NoiseLattice lattice(3, CellHash::Integer);
+    std::vector<float> values(grid.size(), 0.0F), toward_u = values, toward_v = values;
+    add_sparse_noise(values, grid, map, lattice, 0.25, 1.0, toward_u, toward_v);
+    EXPECT_EQ(values, scattered(map)) << scale;
+    for (std::size_t i = 0; i < values.size(); i += 97) {
+      const auto [u, v] = map(static_cast<double>(i % grid.columns) * 1.5, static_cast<double>(i / grid.columns) * 2.0);
+      const auto [along_u, along_v] = sparse_noise_gradient(lattice, u, v, 0.25);
+      // Terms below 4 a cell, of which the largest are sums of columns and rows that nearly cancel.
+      EXPECT_NEAR(toward_u[i], along_u, 2e-5) << scale;
+      EXPECT_NEAR(toward_v[i], along_v, 2e-5) << scale;
+    }
+  }
+}
+
 TEST(NoiseScatter, GivesTheSameBitsWithAnyNumberOfThreads) {
   const std::vector<float> with_many = scattered(oblique(40.0));
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);

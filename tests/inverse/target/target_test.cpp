@@ -30,6 +30,27 @@ TEST(Target, DistanceIsZeroOnTargetAndCountsBothAxesAlike) {
   EXPECT_NEAR(covariance_distance(covariance_of(rounder), brushed), expected, 1e-10);
 }
 
+TEST(Target, DistanceHasTheSlopesOfItsDifferences) {
+  for (const Target& target : {brushed, anisotropy_target(2.5, 0.15)}) {
+    const SlopeCovariance at{0.02, 0.011, 0.004};
+    const CovarianceDistance found = covariance_distance_with_slopes(at, target);
+    EXPECT_NEAR(found.value, covariance_distance(at, target), 1e-12);
+    constexpr double step = 1e-7;
+    const auto difference = [&](double SlopeCovariance::*number) {
+      SlopeCovariance above = at, below = at;
+      above.*number += step;
+      below.*number -= step;
+      return (covariance_distance(above, target) - covariance_distance(below, target)) / (2.0 * step);
+    };
+    // Slopes of some hundreds; distances are known to 1e-15, so their differences to 1e-8.
+    EXPECT_NEAR(found.slopes.xx, difference(&SlopeCovariance::xx), 1e-5);
+    EXPECT_NEAR(found.slopes.yy, difference(&SlopeCovariance::yy), 1e-5);
+    EXPECT_NEAR(found.slopes.xy, difference(&SlopeCovariance::xy), 1e-5);
+  }
+  const SlopeCovariance flat{};
+  EXPECT_TRUE(std::isfinite(covariance_distance_with_slopes(flat, brushed).slopes.xx));
+}
+
 TEST(Target, DistanceDoesNotDependOnTheFrame) {
   Target turned = brushed;
   turned.slopes.rotation = turned.slopes.rotation + 50.0_deg;
