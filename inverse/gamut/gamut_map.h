@@ -22,7 +22,7 @@ struct GamutMapOptions {
 struct BorderPoint {
   AlphaPair alpha;
   /// Relative, of both α's: standard error over draws, what the last steps of the search still gained, the influence
-  /// of the direction (1 %), in quadrature.
+  /// of the direction (1.5 %), in quadrature.
   double tolerance = 0.0;
   std::vector<double> values;  ///< of the kind's free numbers
 };

@@ -1,10 +1,13 @@
 #include "inverse/gamut/slope_spectrum.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "forward/base/error.h"
+#include "forward/pattern/line_integral_convolution.h"
 #include "forward/pattern/noise_spectrum.h"
 #include "forward/pattern/octave_sum.h"
 #include "forward/pattern/sparse_noise.h"
@@ -70,55 +73,96 @@ const NoiseWaves& noise_waves() {
   return waves;
 }
 
-// Noise of cells scale_u × scale_v, smeared along v over `smear` cells and brought back to its deviation.
-AxisSquares noise_slopes(double height_um, double scale_u_um, double scale_v_um, double smear, const Filter& filter) {
+/// Noise of unit height on cells of its own.
+struct NoiseCells {
+  double scale_u_um, scale_v_um;
+  double smear = 0.0;  // along v, in cells; the deviation stays that of the noise
+};
+
+/// Mean square slopes: filtered, and as they are, by the same sum.
+struct FilteredSquares {
+  AxisSquares filtered, plain;
+};
+
+FilteredSquares noise_slopes(const NoiseCells& cells, const Filter& filter) {
   constexpr std::size_t n = NoiseWaves::count;
   const NoiseWaves& waves = noise_waves();
   std::array<double, n> along_u{}, along_v{}, across_u{}, across_v{}, kept{}, slope_u{}, slope_v{};
   for (std::size_t i = 0; i < n; ++i) {
-    const double f_u = waves.frequency[i] / scale_u_um, f_v = waves.frequency[i] / scale_v_um;
+    const double f_u = waves.frequency[i] / cells.scale_u_um, f_v = waves.frequency[i] / cells.scale_v_um;
     along_u[i] = filter.along(f_u);
     along_v[i] = filter.along(f_v);
     across_u[i] = filter.across(f_u);
     across_v[i] = filter.across(f_v);
     slope_u[i] = square(2.0 * pi * f_u);
     slope_v[i] = square(2.0 * pi * f_v);
-    kept[i] = sinc_square(waves.frequency[i] * smear);
+    kept[i] = sinc_square(waves.frequency[i] * cells.smear);
   }
-  AxisSquares sum;
+  FilteredSquares sum;
   double variance = 0.0;
   const bool separable = filter.is_separable();
   for (std::size_t v = 0; v < n; ++v) {
     for (std::size_t u = 0; u < n; ++u) {
-      const double smeared = waves.power[v][u] * kept[v];
-      variance += smeared;
+      const double power = waves.power[v][u] * kept[v];
       const double radial =
-          separable ? 1.0 : filter.radial(waves.frequency[u] / scale_u_um, waves.frequency[v] / scale_v_um);
-      sum.u += smeared * radial * slope_u[u] * along_u[u] * across_v[v];
-      sum.v += smeared * radial * slope_v[v] * along_v[v] * across_u[u];
+          separable ? 1.0 : filter.radial(waves.frequency[u] / cells.scale_u_um, waves.frequency[v] / cells.scale_v_um);
+      variance += power;
+      sum.plain.u += power * slope_u[u];
+      sum.plain.v += power * slope_v[v];
+      sum.filtered.u += power * radial * slope_u[u] * along_u[u] * across_v[v];
+      sum.filtered.v += power * radial * slope_v[v] * along_v[v] * across_u[u];
     }
   }
-  const double factor = square(height_um) * noise_variance_at_z0 / variance;
-  return {factor * sum.u, factor * sum.v};
+  const double factor = noise_variance_at_z0 / variance;
+  for (AxisSquares* squares : {&sum.filtered, &sum.plain}) {
+    squares->u *= factor;
+    squares->v *= factor;
+  }
+  return sum;
 }
 
 template <typename Kind>
 requires requires(const Kind& kind) { octave_sum(kind); }
 AxisSquares slopes(const Kind& kind, const Filter& filter) {
+  const OctaveSum octaves = octave_sum(kind);
+  require(!octaves.absolute, "turbulence has no slope spectrum in closed form: its valleys are sharp");
   AxisSquares sum;
-  for (const Octave& octave : octave_sum(kind).octaves) {
-    const double scale_um = kind.scale.um() / octave.frequency;
-    const AxisSquares own =
-        noise_slopes(kind.height.um() * octave.weight, scale_um, scale_um * kind.stretch, 0.0, filter);
-    sum.u += own.u;
-    sum.v += own.v;
+  for (const Octave& octave : octaves.octaves) {
+    const double scale_um = kind.scale.um() / octave.frequency, power = square(kind.height.um() * octave.weight);
+    const AxisSquares own = noise_slopes({scale_um, scale_um * kind.stretch}, filter).filtered;
+    sum.u += power * own.u;
+    sum.v += power * own.v;
   }
   return sum;
 }
 
+// Slopes of smeared noise between unit lengths of 0.01 and 100, by a table: its quadrature takes longer than a search
+// can wait.
+LineSlopes tabled_lines(double length) {
+  constexpr double least = 0.01, most = 100.0;
+  constexpr std::size_t steps = 120;
+  static const std::vector<LineSlopes> table = [] {
+    std::vector<LineSlopes> list;
+    for (std::size_t i = 0; i <= steps; ++i)
+      list.push_back(smeared_noise(least * std::pow(most / least, static_cast<double>(i) / steps)));
+    return list;
+  }();
+  const double place = steps * std::log(std::clamp(length, least, most) / least) / std::log(most / least);
+  const auto below = std::min(static_cast<std::size_t>(place), steps - 1);
+  const double share = place - static_cast<double>(below);
+  const LineSlopes &a = table[below], &b = table[below + 1];
+  return {a.across + share * (b.across - a.across), a.along + share * (b.along - a.along)};
+}
+
+// The waves say what a filter keeps of the slopes; how steep long lines are they sum too coarsely to say.
 AxisSquares slopes(const LineIntegralConvolution& lines, const Filter& filter) {
   require(lines.singularities.empty(), "slopes about singularities depend on the place");
-  return noise_slopes(lines.height.um(), lines.scale.um(), lines.scale.um(), lines.length / lines.scale, filter);
+  const double scale_um = lines.scale.um(), smear = lines.length / lines.scale;
+  const FilteredSquares squares = noise_slopes({scale_um, scale_um, smear}, filter);
+  const LineSlopes own = tabled_lines(smear);
+  const double power = square(lines.height.um() / scale_um);
+  return {power * own.across * squares.filtered.u / squares.plain.u,
+          power * own.along * squares.filtered.v / squares.plain.v};
 }
 
 // Two plane waves of amplitude height/4, at (f_u, ±f_v).
