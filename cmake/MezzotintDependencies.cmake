@@ -10,6 +10,12 @@ find_package(spdlog REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(Threads REQUIRED)
+# Optional: sweeps over several processes and machines.
+find_package(MPI QUIET COMPONENTS C)
+option(MEZZOTINT_MPI "Spread sweeps over MPI ranks" ${MPI_C_FOUND})
+if(MEZZOTINT_MPI AND NOT MPI_C_FOUND)
+  message(FATAL_ERROR "MEZZOTINT_MPI needs MPI (Debian: libopenmpi-dev)")
+endif()
 
 find_package(OpenImageIO REQUIRED)
 # Debian's target names a folder of OpenCV headers that is not there; CMake would refuse the target.

@@ -17,6 +17,8 @@ class App;
 
 namespace mezzotint {
 
+class Ranks;
+
 /// What every command takes.
 struct CommonOptions {
   bool json = false;  ///< one JSON object on stdout
@@ -29,6 +31,7 @@ struct CommonOptions {
 struct CommandContext {
   const CommonOptions& common;
   const Progress& progress;
+  Ranks& ranks;  ///< the processes that mpirun started; this one alone without it
   /// Prints a result: the JSON object with `--json`, the text otherwise.
   void print(const nlohmann::ordered_json& json, const std::string& text) const;
   /// Says on stderr what must be known before the result is trusted; with `--json` it belongs into the object instead,
@@ -43,6 +46,7 @@ using CommandAction = std::function<ExitStatus(const CommandContext&)>;
 struct Command {
   CLI::App* app = nullptr;
   CommandAction action;
+  bool spreads = false;  ///< its work spreads over MPI ranks; the others refuse more than one
 };
 using AddCommand = Command (*)(CLI::App& program);
 
@@ -62,5 +66,6 @@ Command add_job(CLI::App& program);
 Command add_print(CLI::App& program);
 Command add_validate(CLI::App& program);
 Command add_chart(CLI::App& program);
+Command add_gamut(CLI::App& program);
 
 }  // namespace mezzotint

@@ -14,6 +14,7 @@
 
 #include "experiments/command_line/command.h"
 #include "experiments/configuration/suggestion.h"
+#include "experiments/sweep/ranks.h"
 #include "experiments/version.h"
 #include "forward/base/progress_display.h"
 
@@ -29,9 +30,10 @@ extern "C" void ask_to_stop(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
-constexpr AddCommand commands[] = {
-    add_run,         add_design, add_info, add_convert,    add_measure, add_correct, add_roughness, add_synthesize,
-    add_texture_fit, add_mesh,   add_bsdf, add_bsdf_table, add_job,     add_print,   add_validate,  add_chart};
+constexpr AddCommand commands[] = {add_run,     add_design,     add_info,       add_convert,     add_measure,
+                                   add_correct, add_roughness,  add_synthesize, add_texture_fit, add_mesh,
+                                   add_bsdf,    add_bsdf_table, add_job,        add_print,       add_validate,
+                                   add_chart,   add_gamut};
 
 void add_common_options(CLI::App& app, CommonOptions& common) {
   app.add_flag("--json", common.json, "One JSON object on stdout; progress as JSON lines on stderr");
@@ -66,29 +68,41 @@ int complain(const std::string& message, ExitStatus status) {
   return static_cast<int>(status);
 }
 
-int run_command(const Command& command, const CommonOptions& common) {
-  ProgressDisplay display(style_of(common), stderr);
+// An error of one rank ends them all. What all ranks complain of, such as a wrong file, the first one says.
+int complain_and_stop(Ranks& ranks, const std::string& message, ExitStatus status) {
+  ranks.stop_others(message, status);
+  return ranks.is_first() ? complain(message, status) : static_cast<int>(status);
+}
+
+int run_command(const Command& command, const CommonOptions& common, Ranks& ranks) {
+  ProgressDisplay display(ranks.is_first() ? style_of(common) : ProgressStyle::Quiet, stderr);
   const Progress progress = [&](const ProgressEvent& event) {
     if (stop_was_asked != 0) throw Interrupted();
     display.show(event);
   };
   try {
-    const ExitStatus status = command.action({common, progress});
+    require(command.spreads || ranks.count() == 1,
+            "\"" + command.app->get_name() + "\" does not spread over ranks; start it without mpirun");
+    const ExitStatus status = command.action({common, progress, ranks});
     display.finish();
     return static_cast<int>(status);
+  } catch (const StoppedByOtherRank& stopped) {
+    return static_cast<int>(stopped.status());
   } catch (const Error& error) {
     display.finish();
-    return complain(error.what(), error.status());
+    return complain_and_stop(ranks, error.what(), error.status());
   } catch (const std::bad_alloc&) {
     display.finish();
-    return complain("out of memory; use a smaller patch, a coarser pitch or fewer bins", ExitStatus::Failed);
+    return complain_and_stop(ranks, "out of memory; use a smaller patch, a coarser pitch or fewer bins",
+                             ExitStatus::Failed);
   } catch (const std::exception& error) {
     display.finish();
-    return complain(std::string("internal error, please report it: ") + error.what(), ExitStatus::Failed);
+    return complain_and_stop(ranks, std::string("internal error, please report it: ") + error.what(),
+                             ExitStatus::Failed);
   }
 }
 
-int parse_and_run(int count, char** arguments) {
+int parse_and_run(int count, char** arguments, Ranks& ranks) {
   CLI::App program{
       "Mezzotint: inverse design of surface microstructure.\n"
       "Measure, simulate, optimise, print, measure again: one loop, one program."};
@@ -104,6 +118,7 @@ int parse_and_run(int count, char** arguments) {
   try {
     program.parse(count, arguments);
   } catch (const CLI::ParseError& error) {
+    if (!ranks.is_first()) return error.get_exit_code() == 0 ? 0 : static_cast<int>(ExitStatus::BadInput);
     if (error.get_exit_code() == 0) {
       program.exit(error);
       return std::cout.flush() ? 0 : complain("cannot write to standard output", ExitStatus::Failed);
@@ -119,7 +134,7 @@ int parse_and_run(int count, char** arguments) {
   const int cores = common.threads > 0 ? common.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(cores));
   for (const Command& command : added) {
-    if (command.app->parsed()) return run_command(command, common);
+    if (command.app->parsed()) return run_command(command, common, ranks);
   }
   return static_cast<int>(ExitStatus::BadInput);
 }
@@ -127,13 +142,14 @@ int parse_and_run(int count, char** arguments) {
 }  // namespace
 
 void CommandContext::print(const nlohmann::ordered_json& json, const std::string& text) const {
+  if (!ranks.is_first()) return;
   const std::string output = common.json ? json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) : text;
   std::fprintf(stdout, "%s\n", output.c_str());
   if (std::fflush(stdout) != 0) throw DeviceError("cannot write to standard output");
 }
 
 void CommandContext::warn(const std::vector<std::string>& sentences) const {
-  if (common.json || common.quiet) return;
+  if (common.json || common.quiet || !ranks.is_first()) return;
   for (const std::string& sentence : sentences) spdlog::warn("{}", sentence);
 }
 
@@ -144,5 +160,10 @@ int main(int count, char** arguments) {
   std::signal(SIGTERM, mezzotint::ask_to_stop);
   spdlog::set_default_logger(spdlog::stderr_color_mt("mezzotint"));
   spdlog::set_pattern("%^%l%$: %v");
-  return mezzotint::parse_and_run(count, arguments);
+  try {
+    mezzotint::Ranks ranks;
+    return mezzotint::parse_and_run(count, arguments, ranks);
+  } catch (const mezzotint::Error& error) {
+    return mezzotint::complain(error.what(), error.status());
+  }
 }

@@ -24,7 +24,8 @@ enum class RandomPurpose : std::uint32_t {
   StudySample = 14,
   StudyTexture = 15,
   SamplePlace = 16,
-  TextureDraw = 17
+  TextureDraw = 17,
+  GamutTarget = 18
 };
 
 /// Random numbers by counter: a pure function of (seed, purpose, index, draw). No state is shared,
