@@ -13,36 +13,7 @@ namespace mezzotint {
 
 namespace {
 
-constexpr Range alpha_range{1e-3, 2.0};
 constexpr Range direction_range{-360.0, 360.0};
-
-TargetSpecification read_target(TomlTable table) {
-  TargetSpecification target;
-  target.kind = table.choice("kind", {"beckmann", "anisotropy", "scan"});
-  if (target.kind == "beckmann") {
-    target.alpha_x = table.number("alpha_x", alpha_range);
-    target.alpha_y = table.number("alpha_y", alpha_range);
-    target.rotation = Angle::from_degrees(table.number("rotation_deg", direction_range, 0.0));
-    if (target.alpha_x < target.alpha_y) {
-      table.complain("alpha_y",
-                     "\"alpha_x\" is that of the steeper axis and must not be below \"alpha_y\"; swap them and "
-                     "turn \"rotation_deg\" by 90");
-    }
-  } else if (target.kind == "anisotropy") {
-    target.ratio = table.number("ratio", {1.0, 100.0});
-    target.mean_alpha = table.number("mean_alpha", alpha_range);
-  } else {
-    target.scan = table.file("scan");
-    target.outliers = table.number("outliers", {0.0, 100.0}, target.outliers);
-    if (target.outliers > 0.0 && target.outliers < 1.0) {
-      table.complain("outliers", "\"outliers\" is a number of standard deviations: 0 for none, or from 1 to 100");
-    }
-  }
-  if (table.has("tolerance")) target.tolerance = table.number("tolerance", {1e-6, 10.0});
-  target.rotation_tolerance = Angle::from_degrees(table.number("rotation_tolerance_deg", {1e-3, 90.0}, 2.0));
-  table.finish();
-  return target;
-}
 
 PrinterProfile read_printer_table(TomlTable table) {
   PrinterProfile printer;
@@ -62,6 +33,7 @@ Material read_material(TomlTable& table) {
 
 SimulationSpecification read_simulation(TomlTable table) {
   SimulationSpecification simulation;
+  simulation.incidences_given = table.has("incidence_deg");
   for (const auto& [theta, phi] : table.pairs("incidence_deg", direction_range, {{20.0, 0.0}, {20.0, 90.0}})) {
     if (theta < 0.0 || theta > 89.0)
       table.complain("incidence_deg", "the first angle of a pair is from the normal, in [0, 89]");
@@ -89,13 +61,17 @@ void read_search(TomlTable table, Experiment& experiment) {
                                 "GN_DIRECT_L", "GN_CRS2_LM", "GN_ISRES", "GN_ESCH", "GN_AGS", "G_MLSL_LDS", "LD_LBFGS",
                                 "LD_SLSQP", "LD_MMA", "LD_CCSAQ", "LD_TNEWTON", "LD_VAR2"}));
   }
-  const bool is_scan = experiment.target.kind == "scan";
+  const bool is_lobe = experiment.target.kind == "scan" || is_lobe_alone(experiment.target);
   const std::string objective = table.choice("objective", {"slope_covariance", "brdf_cube_root"},
-                                             is_scan ? "brdf_cube_root" : "slope_covariance");
+                                             is_lobe ? "brdf_cube_root" : "slope_covariance");
   experiment.objective =
       objective == "brdf_cube_root" ? SearchObjective::LobeCubeRoot : SearchObjective::SlopeCovariance;
   if (experiment.target.kind == "anisotropy" && objective == "brdf_cube_root") {
     table.complain("objective", "an anisotropy alone names no lobe; its objective is \"slope_covariance\"");
+  }
+  if (is_lobe_alone(experiment.target) && objective == "slope_covariance") {
+    table.complain("objective", "a target of kind \"" + experiment.target.kind +
+                                    "\" names no slopes; its objective is \"brdf_cube_root\"");
   }
   search.max_evaluations = static_cast<int>(table.integer("max_evaluations", 1, 1'000'000, search.max_evaluations));
   search.relative_tolerance = table.number("relative_tolerance", {1e-12, 0.5}, search.relative_tolerance);
