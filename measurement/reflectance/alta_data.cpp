@@ -50,6 +50,8 @@ public:
 private:
   void read_head_line(std::string_view line) {
     const auto words = words_of(line);
+    const bool counts = words[0] == "#DIM" || words[0].starts_with("#PARAM") || words[0] == "#VS";
+    if (counts && has_rows_) scanner_.fail("a line of the head stands after the first row");
     const auto value = [&] { return words.size() == 2 ? words[1] : std::string_view{}; };
     if (words[0] == "#DIM") {
       if (words.size() != 3 || words[1] != "3") scanner_.fail("reads \"#DIM 3 N\": three angles, N channels");
@@ -84,6 +86,7 @@ private:
       scanner_.fail(fmt::format("has {} numbers; a row has {}: three angles and a sample a channel", words.size(),
                                 3 + measured_.channels.size()));
     }
+    has_rows_ = true;
     const double theta_l = finite_number(words[0], scanner_);
     const PlanePoint place{finite_number(words[1], scanner_), finite_number(words[2], scanner_)};
     const double theta_v = std::hypot(place.x, place.y);
@@ -106,7 +109,7 @@ private:
   TextScanner scanner_;
   MeasuredReflectance measured_;
   SampleWatch watch_;
-  bool known_angles_ = false, with_cosine_ = true;
+  bool known_angles_ = false, with_cosine_ = true, has_rows_ = false;
   std::size_t at_the_horizon_ = 0;
 };
 

@@ -116,17 +116,23 @@ Triangulation::Triangulation(std::vector<PlanePoint> points) : points_(std::move
 }
 
 void Triangulation::leave_out_gaps() {
-  // The nearest neighbour of a point is a neighbour in the triangulation.
-  std::vector<double> nearest(points_.size(), HUGE_VAL);
+  std::vector<std::vector<double>> sides(points_.size());
   const auto side = [&](const Triangle& t, std::size_t i) { return distance(points_[t[i]], points_[t[(i + 1) % 3]]); };
   for (const Triangle& t : triangles_) {
     for (std::size_t i = 0; i < 3; ++i) {
-      for (const std::uint32_t end : {t[i], t[(i + 1) % 3]}) nearest[end] = std::min(nearest[end], side(t, i));
+      for (const std::uint32_t end : {t[i], t[(i + 1) % 3]}) sides[end].push_back(side(t, i));
     }
+  }
+  std::vector<double> median(points_.size(), 0.0);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (sides[i].empty()) continue;
+    const auto middle = sides[i].begin() + static_cast<std::ptrdiff_t>(sides[i].size() / 2);
+    std::nth_element(sides[i].begin(), middle, sides[i].end());
+    median[i] = *middle;
   }
   std::erase_if(triangles_, [&](const Triangle& t) {
     const double longest = std::max({side(t, 0), side(t, 1), side(t, 2)});
-    return longest > longest_side * std::max({nearest[t[0]], nearest[t[1]], nearest[t[2]]});
+    return longest > longest_side * std::max({median[t[0]], median[t[1]], median[t[2]]});
   });
 }
 

@@ -15,12 +15,12 @@ struct PlanePoint {
 
 /// Points of the plane, joined into triangles (Delaunay), for linear interpolation between samples at any places.
 ///
-/// Gaps     a triangle with a side longer than `longest_side` times the largest distance of its corners from their
-///          nearest neighbours lies in a gap of the measurement, and is left out.
+/// Gaps     a triangle with a side longer than `longest_side` times the largest of its corners' median sides lies in a
+///          gap of the measurement, and is left out. Grids that are finer along one direction have no gaps by that.
 /// Source   Bowyer 1981, Watson 1981; points that lie on one circle are told apart by a shift of 1e-9.
 class Triangulation {
 public:
-  static constexpr double longest_side = 4.0;
+  static constexpr double longest_side = 2.0;
   /// Time grows as n^1.5 for points that spread over the plane, and as n² at worst.
   static constexpr std::size_t most_points = 16384;
 

@@ -81,6 +81,8 @@ TEST(TextReaders, ComplainWithTheLine) {
   EXPECT_NE(complaint(parse_cornell, replaced(cornell, "600", "400")).find("must increase"), std::string::npos);
   EXPECT_NE(complaint(parse_cornell, replaced(cornell, "\n2\n", "\n99999999999\n")).find("1 to 4096"),
             std::string::npos);
+  EXPECT_NE(complaint(parse_alta, alta + "#DIM 3 9\n").find("line 9: a line of the head stands after"),
+            std::string::npos);
   EXPECT_NE(complaint(parse_alta, replaced(alta, "PROJ_DPHI", "DPHI")).find("line 4"), std::string::npos);
   EXPECT_NE(complaint(parse_alta, replaced(alta, "0.5 0.5 0 2", "0.5 0.5 0 x")).find("line 6: \"x\" is no number"),
             std::string::npos);

@@ -72,6 +72,15 @@ TEST(Triangulation, LeavesGapsOpen) {
   EXPECT_TRUE(plane.around({0.3, 0.3}));
 }
 
+TEST(Triangulation, TakesAGridThatIsFinerOneWayForWhole) {
+  std::vector<PlanePoint> points;
+  for (int y = 0; y < 30; ++y) {
+    for (int x = 0; x < 6; ++x) points.push_back({0.2 * x, 0.03 * y});
+  }
+  const Triangulation plane(points);
+  EXPECT_EQ(plane.triangles(), 2U * 29U * 5U);
+}
+
 TEST(Triangulation, HasNoTrianglesOnALine) {
   EXPECT_EQ(Triangulation({{0.0, 0.0}, {0.1, 0.0}, {0.2, 0.0}, {0.3, 0.0}}).around({0.5, 0.2}), std::nullopt);
 }
