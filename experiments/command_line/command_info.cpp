@@ -12,6 +12,8 @@
 #include "forward/optics/bsdf.h"
 #include "forward/surface/mesh_file.h"
 #include "measurement/formats/surface_file.h"
+#include "measurement/reflectance/reflectance_file.h"
+#include "measurement/reflectance/reflectance_map.h"
 
 namespace mezzotint {
 
@@ -119,6 +121,35 @@ Json describe(const Job& job) {
           {"led_amplitude", job.led_amplitude}};
 }
 
+// What a lobe that was measured from a listed direction covers, and how much light it holds.
+Json lobe_of_incidence(const MeasuredReflectance& measured, const DirectionAngles& light) {
+  constexpr std::size_t samples = 4;
+  const ReflectanceMap map =
+      reflectance_map(measured, light, {.name = measured.channels.front().name}, {32, 32}, samples);
+  return fmt::format("{:.4f} reflected (channel {}), {:.1f} % of the disc not measured", map.albedo,
+                     measured.channels.front().name, 100.0 * map.not_measured_share);
+}
+
+Json describe(const MeasuredReflectance& measured) {
+  constexpr std::size_t most_lobes = 16;
+  Json lobes = Json::object();
+  for (std::size_t i = 0; i < std::min(measured.incidences.size(), most_lobes); ++i) {
+    const DirectionAngles& light = measured.incidences[i];
+    if (light.theta.degrees() >= 89.99) continue;
+    lobes[fmt::format("{:.2f}°, {:.2f}°", light.theta.degrees(), light.phi.degrees())] =
+        lobe_of_incidence(measured, light);
+  }
+  Json json = {{"format", "measured BRDF, " + measured.format}, {"quantity", measured.quantity},
+               {"channels", measured.channels.size()},          {"first_channel", measured.channels.front().name},
+               {"last_channel", measured.channels.back().name}, {"isotropic", measured.isotropic},
+               {"incidences", measured.incidences.size()},      {"between_incidences", measured.between_incidences}};
+  if (measured.incidences.empty()) json["incidences"] = "all, in a table";
+  if (!lobes.empty()) json["lobes_by_incidence"] = lobes;
+  json["assumption"] = measured.assumption;
+  json["provenance"] = measured.provenance;
+  return json;
+}
+
 bool begins_with(const std::filesystem::path& path, std::string_view magic) {
   // A pipe would be waited for.
   std::error_code ignored;
@@ -136,6 +167,7 @@ Json describe_any(const std::filesystem::path& path) {
     return is_bsdf_table(path) ? describe(read_bsdf_table(path)) : describe(read_channels_exr(path));
   }
   if (is_mesh_path(path)) return describe(read_mesh(path));
+  if (is_reflectance_file(path)) return describe(read_reflectance(path));
   const SurfaceFile surface = read_surface(path);
   Json json = describe(surface);
   if (const auto quality = sample_quality(path, surface))
@@ -184,9 +216,10 @@ Command describing_command(CLI::App& program, const char* name, const char* help
 }  // namespace
 
 Command add_info(CLI::App& program) {
-  return describing_command(program, "info",
-                            "What a file is: surface, mesh, BSDF or job; size, spacing, units, range, provenance",
-                            describe_any);
+  return describing_command(
+      program, "info",
+      "What a file is: surface, mesh, BSDF, measured BRDF or job; size, spacing, units, range, provenance",
+      describe_any);
 }
 
 Command add_job(CLI::App& program) {

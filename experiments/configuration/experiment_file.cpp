@@ -11,36 +11,7 @@ namespace mezzotint {
 
 namespace {
 
-constexpr Range alpha_range{1e-3, 2.0};
 constexpr Range direction_range{-360.0, 360.0};
-
-TargetSpecification read_target(TomlTable table) {
-  TargetSpecification target;
-  target.kind = table.choice("kind", {"beckmann", "anisotropy", "scan"});
-  if (target.kind == "beckmann") {
-    target.alpha_x = table.number("alpha_x", alpha_range);
-    target.alpha_y = table.number("alpha_y", alpha_range);
-    target.rotation = Angle::from_degrees(table.number("rotation_deg", direction_range, 0.0));
-    if (target.alpha_x < target.alpha_y) {
-      table.complain("alpha_y",
-                     "\"alpha_x\" is that of the steeper axis and must not be below \"alpha_y\"; swap them and "
-                     "turn \"rotation_deg\" by 90");
-    }
-  } else if (target.kind == "anisotropy") {
-    target.ratio = table.number("ratio", {1.0, 100.0});
-    target.mean_alpha = table.number("mean_alpha", alpha_range);
-  } else {
-    target.scan = table.file("scan");
-    target.outliers = table.number("outliers", {0.0, 100.0}, target.outliers);
-    if (target.outliers > 0.0 && target.outliers < 1.0) {
-      table.complain("outliers", "\"outliers\" is a number of standard deviations: 0 for none, or from 1 to 100");
-    }
-  }
-  if (table.has("tolerance")) target.tolerance = table.number("tolerance", {1e-6, 10.0});
-  target.rotation_tolerance = Angle::from_degrees(table.number("rotation_tolerance_deg", {1e-3, 90.0}, 2.0));
-  table.finish();
-  return target;
-}
 
 PrinterProfile read_printer_table(TomlTable table) {
   PrinterProfile printer;
@@ -60,6 +31,7 @@ Material read_material(TomlTable& table) {
 
 SimulationSpecification read_simulation(TomlTable table) {
   SimulationSpecification simulation;
+  simulation.incidences_given = table.has("incidence_deg");
   for (const auto& [theta, phi] : table.pairs("incidence_deg", direction_range, {{20.0, 0.0}, {20.0, 90.0}})) {
     if (theta < 0.0 || theta > 89.0)
       table.complain("incidence_deg", "the first angle of a pair is from the normal, in [0, 89]");

@@ -7,27 +7,17 @@
 
 #include "experiments/configuration/pattern_table.h"
 #include "experiments/configuration/search_table.h"
+#include "experiments/configuration/target_table.h"
 #include "forward/optics/direction.h"
 #include "forward/optics/material.h"
 #include "measurement/instrument/virtual_profilometer.h"
 
 namespace mezzotint {
 
-/// `[target]` as it stands in the file; a scan is read and corrected when the run needs it.
-struct TargetSpecification {
-  std::string kind;                     ///< "beckmann", "anisotropy", "scan"
-  double alpha_x = 0.0, alpha_y = 0.0;  ///< beckmann
-  Angle rotation;
-  double ratio = 1.0, mean_alpha = 0.0;  ///< anisotropy
-  std::filesystem::path scan;            ///< scan
-  double outliers = 5.0;                 ///< samples beyond that many standard deviations are taken out; 0: none
-  std::optional<double> tolerance;       ///< left out: 0.05 of the slopes' variances; a lobe is then not judged
-  Angle rotation_tolerance = Angle::from_degrees(2.0);
-};
-
 /// `[simulation]`: how BSDFs are computed.
 struct SimulationSpecification {
   std::vector<DirectionAngles> incidences;
+  bool incidences_given = false;  ///< by the file; else they are the default, and a target may have its own
   Length wavelength = Length::from_nm(550.0);
   Material material = Dielectric{1.5};
   std::string model = "auto";  ///< or "paths"

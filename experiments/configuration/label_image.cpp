@@ -1,29 +1,19 @@
 #include "experiments/configuration/label_image.h"
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
+#include "experiments/configuration/png_end.h"
 #include "forward/base/error.h"
-#include "forward/base/file_input.h"
 
 namespace mezzotint {
 
 namespace {
 
 constexpr int most_pixels_a_side = 8192;
-
-// OpenImageIO 2.4 leaks when libpng runs into the end of a picture, so that is asked before: a PNG ends with an empty
-// chunk IEND and its checksum.
-bool is_cut_off(const std::filesystem::path& path) {
-  constexpr std::array<unsigned char, 12> end = {0, 0, 0, 0, 'I', 'E', 'N', 'D', 0xAE, 0x42, 0x60, 0x82};
-  const std::vector<std::byte> bytes = read_file(path);
-  const auto same = [](std::byte a, unsigned char b) { return std::to_integer<unsigned char>(a) == b; };
-  return bytes.size() < end.size() || !std::equal(bytes.end() - end.size(), bytes.end(), end.begin(), same);
-}
 
 void check_picture(const OIIO::ImageSpec& picture, const std::filesystem::path& path) {
   if (picture.nchannels != 1 || picture.format != OIIO::TypeDesc::UINT8) {
@@ -43,7 +33,7 @@ void check_picture(const OIIO::ImageSpec& picture, const std::filesystem::path& 
 void read_label_image(const std::filesystem::path& path, PatternRegions& into) {
   std::error_code problem;
   if (!std::filesystem::is_regular_file(path, problem)) throw FileError(path, "", "no such file");
-  if (is_cut_off(path)) throw FileError(path, "", "is no PNG picture, or was cut off");
+  if (is_cut_off_png(path)) throw FileError(path, "", "is no PNG picture, or was cut off");
   const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create("png");
   OIIO::ImageSpec picture;
   if (!input || !input->open(path.string(), picture)) {

@@ -133,10 +133,29 @@ std::string TomlTable::choice(std::string_view key, const std::vector<std::strin
   return value;
 }
 
+std::filesystem::path TomlTable::resolved(const toml::node& node, std::filesystem::path path) const {
+  if (path.is_absolute() || was_set_by_hand(node)) return path;
+  return file_->path().parent_path() / path;
+}
+
 std::filesystem::path TomlTable::file(std::string_view key) {
   std::filesystem::path path = text(key);
-  if (path.is_absolute() || was_set_by_hand(*table_->get(key))) return path;
-  return file_->path().parent_path() / path;
+  return resolved(*table_->get(key), std::move(path));
+}
+
+std::vector<std::filesystem::path> TomlTable::files(std::string_view key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) missing(key);
+  const toml::array* list = node->as_array();
+  if (list == nullptr || list->empty())
+    complain_at(node, fmt::format("\"{}\" must be a list of files, like [\"a.exr\", \"b.exr\"]", key));
+  std::vector<std::filesystem::path> paths;
+  for (const toml::node& element : *list) {
+    const auto value = element.value_exact<std::string>();
+    if (!value) complain_at(&element, fmt::format("\"{}\" holds texts in quotes, not {}", key, type_name(element)));
+    paths.push_back(resolved(was_set_by_hand(*node) ? *node : element, *value));
+  }
+  return paths;
 }
 
 std::vector<std::array<double, 2>> TomlTable::pairs(std::string_view key, Range range,

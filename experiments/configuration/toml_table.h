@@ -71,6 +71,8 @@ public:
                                    std::optional<std::string> fallback = {});
   /// A path: relative to the file that holds the key, or to the working folder where `--set` gave it.
   [[nodiscard]] std::filesystem::path file(std::string_view key);
+  /// A list of paths, at least one.
+  [[nodiscard]] std::vector<std::filesystem::path> files(std::string_view key);
   [[nodiscard]] std::vector<std::array<double, 2>> pairs(std::string_view key, Range range,
                                                          const std::vector<std::array<double, 2>>& fallback);
   [[nodiscard]] NumberOrFree number_or_free(std::string_view key, Range range);
@@ -92,6 +94,7 @@ private:
   [[noreturn]] void complain_at(const toml::node* node, const std::string& problem) const;
   [[noreturn]] void missing(std::string_view key) const;
   double checked(const toml::node& node, std::string_view key, Range range) const;
+  [[nodiscard]] std::filesystem::path resolved(const toml::node& node, std::filesystem::path path) const;
 
   const TomlFile* file_;
   const toml::table* table_;  ///< null where it is left out

@@ -64,14 +64,17 @@ const std::vector<Stage>& all_stages() {
 }
 
 bool is_by_light(const Experiment& experiment) {
+  if (is_lobe_alone(experiment.target)) return true;
   return experiment.search.by_light() || (experiment.search.objective.empty() && experiment.target.kind == "scan");
 }
 
 std::string experiment_digest(const Experiment& experiment) {
   std::string text =
       std::string(program_version) + "\n" + experiment.canonical_text + "\n" + printer_text(experiment.printer);
-  if (experiment.target.kind == "scan") {
-    for (const auto& file : files_of_surface(experiment.target.scan)) text += "\n" + file_digest(file);
+  for (const auto& named : files_of(experiment.target)) {
+    // A measured surface may lie in several files.
+    const auto files = experiment.target.kind == "scan" ? files_of_surface(named) : std::vector{named};
+    for (const auto& file : files) text += "\n" + file_digest(file);
   }
   return sha256_hex(std::as_bytes(std::span(text)));
 }

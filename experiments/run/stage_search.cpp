@@ -3,28 +3,12 @@
 #include "experiments/run/run_experiment.h"
 #include "experiments/run/run_files.h"
 #include "experiments/run/stages.h"
+#include "experiments/run/target_lobes.h"
 #include "forward/base/file_output.h"
-#include "forward/scattering/slope_splat.h"
-#include "measurement/formats/surface_file.h"
 
 namespace mezzotint {
 
 namespace {
-
-// The lobes to show, or to compare with where slopes are what is wanted.
-std::optional<LobeTarget> lobe_target_of(const StageContext& context, const Target& target) {
-  if (target.kind == "anisotropy") return std::nullopt;
-  const SimulationSpecification& simulation = context.experiment.simulation;
-  const DirectionGrid grid{simulation.resolution, simulation.resolution};
-  std::vector<DirectionMap> maps;
-  std::optional<HeightField> relief;
-  if (target.kind == "scan") relief = read_gwy(context.folder / "target.gwy").field;
-  for (const auto& incidence : simulation.incidences) {
-    maps.push_back(relief ? slope_reflection_map(*relief, simulation.material, incidence, grid)
-                          : reflection_map(lobe_of(target.slopes), simulation.material, incidence, grid));
-  }
-  return lobe_target(grid, simulation.material, simulation.incidences, maps, false);
-}
 
 DesignProblem problem_of(const StageContext& context, const Target& target) {
   const Experiment& experiment = context.experiment;
@@ -37,7 +21,7 @@ DesignProblem problem_of(const StageContext& context, const Target& target) {
           .fresh_draws = experiment.search.fresh_draws,
           .search = experiment.search.minimize,
           .objective = experiment.search.objective,
-          .lobes = lobe_target_of(context, target),
+          .lobes = target_lobes(experiment, context.folder, target),
           .by_light = is_by_light(experiment),
           .traced = experiment.search.traced,
           .log = context.folder / "evaluations.jsonl",

@@ -9,7 +9,7 @@
 
 #include "forward/base/bounded_memory.h"
 
-/// Inside of forward/optics and forward/bsdf_table.
+/// For the readers of OpenEXR files: forward/optics, forward/bsdf_table, experiments/configuration.
 
 namespace mezzotint {
 

@@ -1,7 +1,7 @@
 #include <cstdint>
 
 #include "forward/base/error.h"
-#include "tests/fuzz/readers.h"
+#include MEZZOTINT_FUZZED_READERS
 
 // Any bytes are read, or refused with a FileError: everything else is a finding.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
