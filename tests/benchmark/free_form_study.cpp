@@ -149,8 +149,9 @@ int main(int count, char** arguments) {
     std::printf("%s\n", wanted.name.c_str());
     const double before = cpu_seconds();
     const FreeForm form = find_free_form(goal, printer, {.pixels = tile_pixels});
-    std::printf("  %d evaluations, %.1f s of CPU, from %s\n", form.evaluations, cpu_seconds() - before,
-                form.start.c_str());
+    std::printf("  %d evaluations, %.1f s of CPU, from %s; root of the objective %.4f on its own samples\n",
+                form.evaluations, cpu_seconds() - before, form.start.c_str(), std::sqrt(form.on_search_draws));
+    for (const std::string& warning : form.warnings) std::printf("  %s\n", warning.c_str());
     const GrayOfSeed gray = [&](std::uint64_t) { return form.gray; };
     const Errors free = verified("free form", gray, Surround::Repeat, printer, goal);
     if (budget > 0) {
