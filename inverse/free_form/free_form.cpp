@@ -20,7 +20,7 @@ namespace {
 
 // Points of the relief a pixel and axis; their places change with each epoch. Three are cheap; steep parts need more.
 constexpr std::size_t subsamples = 3, last_subsamples = 4;
-constexpr std::size_t finalists = 2;
+constexpr std::size_t semifinalists = 4, finalists = 2;
 constexpr std::size_t correction_draws = 2;
 // Draws of places and grounds: for corrections, for the choice of a finalist, and for the verdict.
 constexpr std::uint64_t correction_seed = std::uint64_t{1} << 23, choice_seed = std::uint64_t{1} << 24,
@@ -51,13 +51,14 @@ public:
   FreeForm run() {
     begin();
     for (std::size_t i = 0; i < state_.growths.size(); ++i) advance(i, trial_of(i));
+    const std::vector<std::size_t> semi = best_of(better_trials(), 0, semifinalists);
+    for (const std::size_t i : semi) advance(i, refinement_of(i, quarter()));
+    const std::vector<std::size_t> best = best_of(semi, quarter(), finalists);
     std::vector<double> chosen_by;
-    const std::vector<std::size_t> best = best_trials();
     for (const std::size_t i : best) {
-      advance(i, refinement_of(i));
-      const LobeJudgement judged =
-          judge_draws(traced(gray_of(state_.growths[i]), choice_seed, options_.fresh_draws), goal_);
-      chosen_by.push_back(weighted_sum(options_.objective, judged));
+      advance(i, refinement_of(i, epochs()));
+      const auto draws = traced(gray_of(state_.growths[i]), choice_seed, options_.fresh_draws);
+      chosen_by.push_back(weighted_sum(options_.objective, judge_draws(draws, goal_)));
     }
     const auto chosen = static_cast<std::size_t>(std::ranges::min_element(chosen_by) - chosen_by.begin());
     return verdict(state_.growths[best[chosen]]);
@@ -70,7 +71,7 @@ private:
       state_ = read_state(options_.state, problem_);
     } else {
       state_.pixels = options_.pixels;
-      state_.best.last = std::numeric_limits<double>::max();
+      state_.best.after = {std::numeric_limits<double>::max()};
       for (const StartShape& shape : start_shapes(goal_, printer_, options_)) {
         for (int trial = 0; trial < 2; ++trial) {
           Growth growth;
@@ -82,11 +83,12 @@ private:
     }
     for (const Growth& growth : state_.growths) done_ += growth.evaluations;
     planned_ = 1.5 * static_cast<double>(state_.growths.size()) * options_.start_evaluations +
-               static_cast<double>(finalists) * options_.evaluations;
+               static_cast<double>(finalists) * options_.evaluations +
+               static_cast<double>((semifinalists - finalists) * quarter()) * options_.evaluations_per_epoch;
   }
 
   [[nodiscard]] std::vector<Stage> trial_of(std::size_t growth) const {
-    const Stage straight{.objective = options_.objective, .evaluations = options_.start_evaluations};
+    const Stage straight{.objective = options_.start_objective, .evaluations = options_.start_evaluations};
     if (growth % 2 == 1) return {straight};
     Stage moved = straight;
     moved.objective = {{LobeDistance::Wasserstein, 1.0}};
@@ -94,24 +96,30 @@ private:
     return {moved, straight};
   }
 
-  // The trial, then epoch after epoch, each with other places.
-  [[nodiscard]] std::vector<Stage> refinement_of(std::size_t growth) const {
+  [[nodiscard]] std::size_t epochs() const {
+    return static_cast<std::size_t>((options_.evaluations + options_.evaluations_per_epoch - 1) /
+                                    options_.evaluations_per_epoch);
+  }
+  [[nodiscard]] std::size_t quarter() const { return (epochs() + 3) / 4; }
+
+  // The trial, then so many epochs, each with other places.
+  [[nodiscard]] std::vector<Stage> refinement_of(std::size_t growth, std::size_t count) const {
     std::vector<Stage> stages = trial_of(growth);
-    const int epochs = (options_.evaluations + options_.evaluations_per_epoch - 1) / options_.evaluations_per_epoch;
-    int left = options_.evaluations, corrected = 0;
-    for (int epoch = 0; epoch < epochs; ++epoch) {
+    const auto corrections = static_cast<std::size_t>(options_.traced_corrections);
+    std::size_t corrected = 0;
+    int left = options_.evaluations;
+    for (std::size_t epoch = 0; epoch < count; ++epoch) {
       // Spread over the second half.
-      const int due = epochs / 2 + corrected * (epochs - epochs / 2) / std::max(1, options_.traced_corrections);
-      if (corrected < options_.traced_corrections && epoch >= due) {
-        stages.push_back({.correct = true, .epoch = static_cast<std::uint64_t>(epoch) + 1});
+      while (corrected < corrections && epoch >= (epochs() + 1) / 2 + corrected * (epochs() / 2) / corrections) {
+        stages.push_back({.correct = true, .epoch = epoch + 1});
         ++corrected;
       }
       const int now = std::min(left, options_.evaluations_per_epoch);
       left -= now;
-      stages.push_back({.objective = options_.objective,
+      stages.push_back({.objective = 3 * epoch < 2 * epochs() ? options_.start_objective : options_.objective,
                         .evaluations = now,
-                        .epoch = static_cast<std::uint64_t>(epoch) + 1,
-                        .samples = 3 * epoch < 2 * epochs ? subsamples : last_subsamples});
+                        .epoch = epoch + 1,
+                        .samples = 2 * epoch < epochs() ? subsamples : last_subsamples});
     }
     return stages;
   }
@@ -119,13 +127,11 @@ private:
   // The stages that are not done yet; after each the state is on disk.
   void advance(std::size_t index, const std::vector<Stage>& stages) {
     Growth& growth = state_.growths[index];
-    for (auto next = static_cast<std::size_t>(growth.stages); next < stages.size(); ++next) {
+    for (std::size_t next = growth.after.size(); next < stages.size(); ++next) {
       if (stages[next].correct)
         correct(growth, stages[next]);
       else
         improve(growth, stages[next]);
-      growth.stages = static_cast<int>(next) + 1;
-      if (next + 1 == trial_of(index).size()) growth.trial = growth.last;
       keep();
     }
   }
@@ -133,13 +139,21 @@ private:
     if (!options_.state.empty()) write_state(options_.state, problem_, state_);
   }
 
-  // The better trial of each start, the best starts first.
-  [[nodiscard]] std::vector<std::size_t> best_trials() const {
-    std::vector<std::size_t> best;
+  // The objective that a growth had after its trial and so many epochs, none of which follows a correction.
+  [[nodiscard]] double value_after(std::size_t index, std::size_t count) const {
+    return state_.growths[index].after[trial_of(index).size() + count - 1];
+  }
+  // Of each start.
+  [[nodiscard]] std::vector<std::size_t> better_trials() const {
+    std::vector<std::size_t> better;
     for (std::size_t i = 0; i < state_.growths.size(); i += 2)
-      best.push_back(state_.growths[i].trial < state_.growths[i + 1].trial ? i : i + 1);
-    std::ranges::stable_sort(best, {}, [this](std::size_t i) { return state_.growths[i].trial; });
-    return {best.begin(), best.begin() + static_cast<std::ptrdiff_t>(std::min(best.size(), finalists))};
+      better.push_back(value_after(i, 0) < value_after(i + 1, 0) ? i : i + 1);
+    return better;
+  }
+  [[nodiscard]] std::vector<std::size_t> best_of(std::vector<std::size_t> growths, std::size_t epochs_done,
+                                                 std::size_t count) const {
+    std::ranges::stable_sort(growths, {}, [&](std::size_t i) { return value_after(i, epochs_done); });
+    return {growths.begin(), growths.begin() + static_cast<std::ptrdiff_t>(std::min(growths.size(), count))};
   }
 
   [[nodiscard]] FreeFormBench bench(const Stage& stage) const {
@@ -183,7 +197,7 @@ private:
                                                          .seed = options_.seed},
                                                         observer);
       growth.wanted_um = found.best.values;
-      growth.last = found.best.objective;
+      growth.after.push_back(found.best.objective);
       growth.evaluations += found.evaluations;
       growth.history.insert(growth.history.end(), history.begin(), history.end());
     } catch (...) {
@@ -194,10 +208,10 @@ private:
 
   void note(const Growth& growth, const SearchStep& step, int evaluations, std::vector<double>& history) {
     history.push_back(step.objective);
-    if (!std::isfinite(step.objective) || step.objective >= state_.best.last) return;
+    if (!std::isfinite(step.objective) || step.objective >= last_of(state_.best)) return;
     state_.best.start = growth.start;
     state_.best.wanted_um = step.values;
-    state_.best.last = step.objective;
+    state_.best.after = {step.objective};
     state_.best.evaluations = evaluations;
   }
 
@@ -228,13 +242,14 @@ private:
         growth.beyond[light][k] = seen - growth.beyond[light][k];
       }
     }
+    growth.after.push_back(last_of(growth));
   }
 
   [[nodiscard]] FreeForm verdict(const Growth& best) const {
     FreeForm found{.gray = quantize(gray_of(best), printer_),
                    .start = best.start,
                    .history = best.history,
-                   .on_search_draws = best.last,
+                   .on_search_draws = last_of(best),
                    .evaluations = static_cast<int>(done_)};
     VerificationOptions fresh{.draw = draw_options(), .samples = options_.traced_samples};
     for (std::uint64_t draw = 0; draw < options_.fresh_draws; ++draw)
@@ -272,8 +287,8 @@ std::optional<FreeFormSoFar> free_form_so_far(const std::filesystem::path& path,
     throw FileError(path, "", "holds a relief of another size than it says; delete it to start anew");
   int evaluations = 0;
   for (const Growth& growth : state.growths) evaluations += growth.evaluations;
-  return FreeFormSoFar{quantize(gray_of_heights(best.wanted_um, state.pixels, printer), printer), best.start, best.last,
-                       evaluations};
+  return FreeFormSoFar{quantize(gray_of_heights(best.wanted_um, state.pixels, printer), printer), best.start,
+                       last_of(best), evaluations};
 }
 
 }  // namespace mezzotint

@@ -17,6 +17,7 @@ namespace {
 // What matters to a shape in a lobe.
 struct LobeAxes {
   Angle longer;         // direction of its longer axis
+  double spread = 0.0;  // RMS slope along it, about the lobe's middle
   Angle toward_middle;  // from the mirror direction
   double tilt = 0.0;    // slope that sends light from the mirror direction to the lobe's middle
   bool leans = false;   // its middle is further from there than half of its smaller RMS width
@@ -29,6 +30,7 @@ LobeAxes axes_of(const LobeTarget& goal) {
   const Direction light = to_direction(goal.incidences.front());
   const Eigen::Vector2d middle = moments.mean + Eigen::Vector2d(light.x(), light.y());
   return {Angle::from_radians(std::atan2(longer.y(), longer.x())),
+          std::sqrt(solver.eigenvalues()(1)) / (2.0 * light.z()),
           Angle::from_radians(std::atan2(middle.y(), middle.x())), middle.norm() / (2.0 * light.z()),
           middle.norm() > 0.5 * std::sqrt(std::max(0.0, solver.eigenvalues()(0)))};
 }
@@ -72,6 +74,14 @@ std::vector<StartShape> saws(const LobeAxes& axes, const PrinterProfile& printer
   return shapes;
 }
 
+// Ridges whose two sides are as steep as the lobe is wide.
+Ridges ridges(const LobeAxes& axes, Length height, Length pixel, std::size_t pixels) {
+  const Length longest = pixel * (0.5 * static_cast<double>(pixels)), wanted = 2.0 * height / axes.spread;
+  return {.wavelength = std::clamp(wanted, std::min(12.0 * pixel, longest), longest),
+          .direction = axes.longer,
+          .height = height};
+}
+
 StartShape lifted(const std::string& name, const Pattern& pattern, const PrinterProfile& printer, std::size_t pixels) {
   const Length pixel = printer.pixel_pitch;
   const HeightField heights = synthesize(pattern, {pixels, pixels, pixel, pixel}, {}, Continuation::Periodic);
@@ -91,7 +101,7 @@ std::vector<StartShape> start_shapes(const LobeTarget& goal, const PrinterProfil
       {"noise", Noise{.scale = 12.0 * pixel, .height = height, .seed = options.seed}},
       {"fine noise", Noise{.scale = 7.0 * pixel, .height = height, .seed = options.seed}},
       {"crossed waves", Sinusoid{.wavelength_u = 12.0 * pixel, .wavelength_v = 12.0 * pixel, .height = height}},
-      {"ridges", Ridges{.wavelength = 12.0 * pixel, .direction = axes.longer, .height = height}}};
+      {"ridges", ridges(axes, height, pixel, options.pixels)}};
   std::vector<StartShape> shapes;
   for (const auto& [name, pattern] : patterns) shapes.push_back(lifted(name, pattern, printer, options.pixels));
   if (axes.leans) {

@@ -24,14 +24,8 @@ std::string digest_of(std::string_view text) {
 }
 
 json to_json(const Growth& growth) {
-  return {{"start", growth.start},
-          {"wanted_um", growth.wanted_um},
-          {"history", growth.history},
-          {"trial", growth.trial},
-          {"last", growth.last},
-          {"stages", growth.stages},
-          {"evaluations", growth.evaluations},
-          {"beyond", growth.beyond}};
+  return {{"start", growth.start}, {"wanted_um", growth.wanted_um},     {"history", growth.history},
+          {"after", growth.after}, {"evaluations", growth.evaluations}, {"beyond", growth.beyond}};
 }
 
 Growth growth_of(const json& from) {
@@ -39,9 +33,7 @@ Growth growth_of(const json& from) {
   from.at("start").get_to(growth.start);
   from.at("wanted_um").get_to(growth.wanted_um);
   from.at("history").get_to(growth.history);
-  from.at("trial").get_to(growth.trial);
-  from.at("last").get_to(growth.last);
-  from.at("stages").get_to(growth.stages);
+  from.at("after").get_to(growth.after);
   from.at("evaluations").get_to(growth.evaluations);
   from.at("beyond").get_to(growth.beyond);
   return growth;
@@ -58,12 +50,17 @@ json printer_json(const PrinterProfile& printer) {
           {"ground", {printer.ground_amplitude.um(), ground}}};
 }
 
+json weights_json(const std::vector<WeightedDistance>& objective) {
+  json weights = json::array();
+  for (const WeightedDistance& part : objective) weights.push_back({name_of(part.distance), part.weight});
+  return weights;
+}
+
 json options_json(const FreeFormOptions& options) {
-  json objective = json::array();
-  for (const WeightedDistance& part : options.objective) objective.push_back({name_of(part.distance), part.weight});
   return {{"pixels", options.pixels},
           {"budget", {options.start_evaluations, options.evaluations, options.evaluations_per_epoch}},
-          {"objective", objective},
+          {"objective", weights_json(options.objective)},
+          {"start_objective", weights_json(options.start_objective)},
           {"corrections", options.traced_corrections},
           {"traced", {options.fresh_draws, options.traced_samples}},
           {"algorithm", options.algorithm},

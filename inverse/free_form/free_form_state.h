@@ -15,17 +15,18 @@ struct Growth {
   std::string start;
   std::vector<double> wanted_um;
   std::vector<double> history;       ///< the objective at every evaluation
-  double trial = 0.0;                ///< the objective after the trial, by which finalists are known
-  double last = 0.0;                 ///< the objective after the last stage
-  int stages = 0;                    ///< finished
+  std::vector<double> after;         ///< the objective after every finished stage; that before, for a correction
   int evaluations = 0;               ///< in finished stages
   std::vector<DirectionMap> beyond;  ///< what tracing showed beyond the model; empty before a correction
 };
 
+/// Its objective now.
+[[nodiscard]] inline double last_of(const Growth& growth) { return growth.after.back(); }
+
 /// All growths, and the best that any has had. Stages are numbered, so that a search knows what is left to do.
 struct FreeFormState {
   std::vector<Growth> growths;
-  Growth best;  ///< empty before the first evaluation of the objective
+  Growth best;  ///< empty before the first evaluation of the objective; else with one `after`
   std::size_t pixels = 0;
 };
 

@@ -61,6 +61,15 @@ void add_goal_warnings(const LobeTarget& goal, const PrinterProfile& printer, co
   }
 }
 
+void require_valid_objective(const std::vector<WeightedDistance>& objective) {
+  double sum = 0.0;
+  for (const WeightedDistance& part : objective) {
+    require(std::isfinite(part.weight) && part.weight >= 0.0, "weights of distances must be finite and not negative");
+    sum += part.weight;
+  }
+  require(sum > 0.0, "an objective needs a distance of positive weight");
+}
+
 }  // namespace
 
 void require_valid_search(const LobeTarget& goal, const FreeFormOptions& options) {
@@ -70,12 +79,8 @@ void require_valid_search(const LobeTarget& goal, const FreeFormOptions& options
   require(options.start_evaluations >= 1 && options.evaluations >= 1 && options.evaluations_per_epoch >= 1,
           "a free form needs at least one evaluation from each start and in each epoch");
   require(options.traced_corrections >= 0 && options.traced_corrections <= 10, "0 to 10 traced corrections");
-  double sum = 0.0;
-  for (const WeightedDistance& part : options.objective) {
-    require(std::isfinite(part.weight) && part.weight >= 0.0, "weights of distances must be finite and not negative");
-    sum += part.weight;
-  }
-  require(sum > 0.0, "an objective needs a distance of positive weight");
+  require_valid_objective(options.start_objective);
+  require_valid_objective(options.objective);
 }
 
 double weighted_sum(const std::vector<WeightedDistance>& objective, const LobeJudgement& judgement,
