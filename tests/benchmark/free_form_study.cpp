@@ -2,7 +2,9 @@
 // that patterns can hardly have; both verified alike: printed with the printer's gray levels on grounds that neither
 // has met, and traced through their full geometry.
 //
-//   free_form_study [EVALUATIONS [LOBE]]     of the parametric search, in all (default 1200; 0: none)
+//   free_form_study [EVALUATIONS [LOBE [CORRECTIONS]]]
+//
+// EVALUATIONS of the parametric search, in all (default 1200; 0: none); traced CORRECTIONS of the free form.
 //
 // 48 × 48 bins, light from straight above, index 1.5; the wanted lobe has the light of a flat surface. 8 draws of 2^20
 // paths. Seconds are of CPU time: half of them on two idle cores.
@@ -150,9 +152,12 @@ int main(int count, char** arguments) {
     const LobeTarget goal = lobe_target(bins, material, {straight}, {map}, false);
     std::printf("%s\n", wanted.name.c_str());
     const double before = cpu_seconds();
-    const FreeForm form = find_free_form(goal, printer, {.pixels = tile_pixels});
-    std::printf("  %d evaluations, %.1f s of CPU, from %s\n", form.evaluations, cpu_seconds() - before,
-                form.start.c_str());
+    FreeFormOptions options{.pixels = tile_pixels};
+    if (count > 3) options.traced_corrections = std::atoi(arguments[3]);
+    const FreeForm form = find_free_form(goal, printer, options);
+    std::printf("  %d evaluations, %.1f s of CPU, from %s; root of the objective %.4f on its own samples\n",
+                form.evaluations, cpu_seconds() - before, form.start.c_str(), std::sqrt(form.on_search_draws));
+    for (const std::string& warning : form.warnings) std::printf("  %s\n", warning.c_str());
     const GrayOfSeed gray = [&](std::uint64_t) { return form.gray; };
     const Errors free = verified("free form", gray, Surround::Repeat, printer, goal);
     if (budget > 0) {
