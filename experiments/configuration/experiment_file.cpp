@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 
 #include "experiments/configuration/printer_file.h"
-#include "experiments/configuration/suggestion.h"
-#include "inverse/search/minimize.h"
 
 namespace mezzotint {
 
@@ -78,35 +76,6 @@ SimulationSpecification read_simulation(TomlTable table) {
   return simulation;
 }
 
-void read_search(TomlTable table, Experiment& experiment) {
-  MinimizeOptions& search = experiment.search;
-  search.algorithm = table.text("algorithm", search.algorithm);
-  if (!is_known_algorithm(search.algorithm)) {
-    table.complain("algorithm",
-                   "NLopt knows no algorithm \"" + search.algorithm + "\"" +
-                       suggest(search.algorithm,
-                               {"LN_BOBYQA", "LN_SBPLX", "LN_COBYLA", "LN_NELDERMEAD", "LN_PRAXIS", "LN_NEWUOA_BOUND",
-                                "GN_DIRECT_L", "GN_CRS2_LM", "GN_ISRES", "GN_ESCH", "GN_AGS", "G_MLSL_LDS", "LD_LBFGS",
-                                "LD_SLSQP", "LD_MMA", "LD_CCSAQ", "LD_TNEWTON", "LD_VAR2"}));
-  }
-  const bool is_scan = experiment.target.kind == "scan";
-  const std::string objective = table.choice("objective", {"slope_covariance", "brdf_cube_root"},
-                                             is_scan ? "brdf_cube_root" : "slope_covariance");
-  experiment.objective =
-      objective == "brdf_cube_root" ? SearchObjective::LobeCubeRoot : SearchObjective::SlopeCovariance;
-  if (experiment.target.kind == "anisotropy" && objective == "brdf_cube_root") {
-    table.complain("objective", "an anisotropy alone names no lobe; its objective is \"slope_covariance\"");
-  }
-  search.max_evaluations = static_cast<int>(table.integer("max_evaluations", 1, 1'000'000, search.max_evaluations));
-  search.relative_tolerance = table.number("relative_tolerance", {1e-12, 0.5}, search.relative_tolerance);
-  search.seed = static_cast<std::uint64_t>(table.integer("seed", 0, std::int64_t{1} << 38, std::int64_t(search.seed)));
-  experiment.search_draws =
-      static_cast<std::size_t>(table.integer("draws", 1, 256, std::int64_t(experiment.search_draws)));
-  experiment.fresh_draws =
-      static_cast<std::size_t>(table.integer("fresh_draws", 2, 256, std::int64_t(experiment.fresh_draws)));
-  table.finish();
-}
-
 void read_print(TomlTable table, Experiment& experiment) {
   experiment.patch.pixels =
       static_cast<std::size_t>(table.integer("patch_pixels", 32, 1024, std::int64_t(experiment.patch.pixels)));
@@ -147,11 +116,11 @@ VirtualProfilometer read_measurement(TomlTable table) {
 // What would come to grief at the end of a long run, found at its beginning.
 void require_feasible(const TomlTable& print, const TomlTable& measurement, const Experiment& experiment) {
   const double side = static_cast<double>(experiment.patch.pixels * experiment.patch.subsamples);
-  const double gib = static_cast<double>(experiment.search_draws) * side * side * sizeof(float) / (1U << 30U);
+  const double gib = static_cast<double>(experiment.search.draws) * side * side * sizeof(float) / (1U << 30U);
   if (gib > 4.0) {
     print.complain("subsamples", fmt::format("{} draws of {} × {} samples need {:.0f} GiB; take fewer draws, pixels or "
                                              "subsamples (4 GiB at most)",
-                                             experiment.search_draws, side, side, gib));
+                                             experiment.search.draws, side, side, gib));
   }
   const double width_um = static_cast<double>(experiment.patch.pixels) * experiment.printer.pixel_pitch.um();
   const double samples = width_um / experiment.measurement.pitch.um();
@@ -186,7 +155,7 @@ Experiment read_experiment(const std::filesystem::path& path, const std::vector<
   experiment.pattern = read_pattern(root.table("pattern"), root.has("pattern"), PatternUse::Search);
   experiment.simulation = read_simulation(root.table("simulation"));
   experiment.patch.wavelength = experiment.simulation.wavelength;
-  read_search(root.table("search"), experiment);
+  experiment.search = read_search(root.table("search"), experiment.target.kind != "anisotropy");
   read_print(root.table("print"), experiment);
   experiment.measurement = read_measurement(root.table("measurement"));
   root.finish();

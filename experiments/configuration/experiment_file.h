@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "experiments/configuration/pattern_table.h"
+#include "experiments/configuration/search_table.h"
 #include "forward/optics/direction.h"
 #include "forward/optics/material.h"
 #include "measurement/instrument/virtual_profilometer.h"
@@ -22,12 +23,6 @@ struct TargetSpecification {
   double outliers = 5.0;                 ///< samples beyond that many standard deviations are taken out; 0: none
   std::optional<double> tolerance;       ///< left out: 0.05 of the slopes' variances; a lobe is then not judged
   Angle rotation_tolerance = Angle::from_degrees(2.0);
-};
-
-/// `[search] objective`: what the search lowers, and what `[target] tolerance` is for.
-enum class SearchObjective {
-  SlopeCovariance,  ///< "slope_covariance": the variances of the slopes along both axes, and their direction
-  LobeCubeRoot      ///< "brdf_cube_root": the cosine-weighted cube-root error of the reflection maps
 };
 
 /// `[simulation]`: how BSDFs are computed.
@@ -58,10 +53,7 @@ struct Experiment {
   PatternSpecification pattern;
   PatchOptions patch;
   SimulationSpecification simulation;
-  std::size_t search_draws = 8;
-  std::size_t fresh_draws = 12;
-  SearchObjective objective = SearchObjective::SlopeCovariance;
-  MinimizeOptions search;
+  SearchSpecification search;
   PrintSpecification print;
   VirtualProfilometer measurement;
 };

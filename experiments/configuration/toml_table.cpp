@@ -175,6 +175,10 @@ NumberOrFree TomlTable::number_or_free(std::string_view key, Range range) {
   return result;
 }
 
+bool TomlTable::is_table(std::string_view key) const {
+  return table_ != nullptr && table_->contains(key) && table_->get(key)->is_table();
+}
+
 TomlTable TomlTable::table(std::string_view key) {
   const toml::node* node = find(key);
   if (node != nullptr && !node->is_table()) {

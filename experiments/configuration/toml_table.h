@@ -75,6 +75,7 @@ public:
                                                          const std::vector<std::array<double, 2>>& fallback);
   [[nodiscard]] NumberOrFree number_or_free(std::string_view key, Range range);
 
+  [[nodiscard]] bool is_table(std::string_view key) const;
   /// A table within this one; an empty one where it is left out.
   [[nodiscard]] TomlTable table(std::string_view key);
   /// An array of tables.

@@ -34,13 +34,12 @@ nlohmann::json parameter_table(const RunResults& results) {
 
 nlohmann::json history_chart(const RunResults& results) {
   std::vector<double> objectives;
-  for (const auto& step : results.design.history) objectives.push_back(step.objective);
+  for (const auto& step : results.design.search.history) objectives.push_back(step.step.objective);
   return search_history(
       {.title = "Search history",
-       .caption = fmt::format("{} evaluations; {}.", results.design.search.evaluations, results.design.search.outcome),
+       .caption = fmt::format("{:.0f} evaluations; {}.", results.design.search.cost, results.design.search.outcome),
        .span = Span::Half},
-      objectives, {},
-      results.design.fresh_lobe_error ? "cube-root error of the lobe" : "distance of the slope covariances");
+      objectives, {}, "distance that the stage lowered");
 }
 
 nlohmann::json ellipse_chart(const RunResults& results) {
@@ -78,9 +77,9 @@ Section design_section(const Experiment& experiment, const RunResults& results) 
           "`{}` changed the free parameters of the pattern until the {} of the *printed* relief matched: pattern, gray "
           "levels, spread of the light, cure curve and ground noise are all in the loop. The "
           "search saw the same {} random draws at every step; the result is judged on {} others.",
-          experiment.search.algorithm,
+          experiment.search.minimize.algorithm,
           results.design.fresh_lobe_error ? "reflection maps (single reflection, cube-rooted)" : "slope covariance",
-          experiment.search_draws, experiment.fresh_draws)};
+          experiment.search.draws, experiment.search.fresh_draws)};
   if (!experiment.pattern.reason.empty()) section.text += "\n\nPattern: " + experiment.pattern.reason + ".";
   section.components = {parameter_table(results), history_chart(results), ellipse_chart(results),
                         covariance_table(results)};

@@ -95,7 +95,7 @@ Provenance provenance(const Experiment& experiment, const RunResults& results) {
   Provenance entries = {{"program", std::string("mezzotint ") + program_version},
                         {"experiment", experiment.file.filename().string()},
                         {"printer", experiment.printer.name},
-                        {"seed", std::to_string(experiment.search.seed)},
+                        {"seed", std::to_string(experiment.search.minimize.seed)},
                         {"settings", experiment.canonical_text}};
   for (const auto& [name, value] : results.incidences.front().printed.provenance) entries["bsdf " + name] = value;
   return entries;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/run/design_file.h"
 #include "experiments/run/run_files.h"
 #include "experiments/run/stages.h"
 #include "experiments/version.h"
@@ -60,6 +61,10 @@ const std::vector<Stage>& all_stages() {
       {"target", run_target},   {"search", run_search},   {"print", run_print},  {"measure", run_measure},
       {"compare", run_compare}, {"scatter", run_scatter}, {"report", run_report}};
   return stages;
+}
+
+bool is_by_light(const Experiment& experiment) {
+  return experiment.search.by_light() || (experiment.search.objective.empty() && experiment.target.kind == "scan");
 }
 
 std::string experiment_digest(const Experiment& experiment) {

@@ -34,4 +34,8 @@ struct RunOutcome {
 /// What identifies a run: program version, all settings, printer profile, and the content of a scan.
 [[nodiscard]] std::string experiment_digest(const Experiment& experiment);
 
+/// Whether the lobes are what a run is for, and its tolerance their cube-root error; else the slopes are. A scan is by
+/// its light, unless `[search] objective` says otherwise.
+[[nodiscard]] bool is_by_light(const Experiment& experiment);
+
 }  // namespace mezzotint

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "experiments/configuration/experiment_file.h"
+#include "experiments/run/design_file.h"
 #include "experiments/run/run_files.h"
 #include "experiments/run/run_folder.h"
 #include "forward/optics/bsdf.h"

@@ -1,3 +1,4 @@
+#include "experiments/run/design_file.h"
 #include "experiments/run/patch.h"
 #include "experiments/run/run_files.h"
 #include "experiments/run/stages.h"
@@ -39,7 +40,7 @@ std::vector<std::string> run_print(const StageContext& context) {
   const HeightField printed = print_virtually(read_uvj(context.folder / "job.uvj"), experiment.printer,
                                               {.subsamples = experiment.patch.subsamples,
                                                .wavelength = experiment.simulation.wavelength,
-                                               .seed = print_seed_offset + experiment.search.seed},
+                                               .seed = print_seed_offset + experiment.search.minimize.seed},
                                               context.progress);
   write_gwy(printed, "printed", {{"device", "virtual printer"}}, context.folder / "printed.gwy");
   return {"design.gwy", "predicted.gwy", "job.uvj", "printed.gwy"};

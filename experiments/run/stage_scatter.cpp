@@ -46,7 +46,7 @@ std::vector<std::string> run_scatter(const StageContext& context) {
       report(inner, "", 0.0);
       outputs.push_back(fmt::format("bsdf_{}_{}.exr", name, i));
       // A seed of its own for every map: their errors must be independent.
-      const std::uint64_t seed = context.experiment.search.seed * 1000 + outputs.size();
+      const std::uint64_t seed = context.experiment.search.minimize.seed * 1000 + outputs.size();
       write_exr(simulate(field, tracer, simulation, simulation.incidences[i], seed, inner),
                 context.folder / outputs.back());
     }

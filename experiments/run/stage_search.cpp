@@ -1,27 +1,29 @@
 #include "experiments/configuration/pattern_table.h"
+#include "experiments/run/design_file.h"
+#include "experiments/run/run_experiment.h"
 #include "experiments/run/run_files.h"
 #include "experiments/run/stages.h"
 #include "forward/base/file_output.h"
+#include "forward/scattering/slope_splat.h"
 #include "measurement/formats/surface_file.h"
 
 namespace mezzotint {
 
 namespace {
 
-// What the printed lobe should be, where the search is for the lobe and not for the slopes alone.
-std::optional<LobeGoal> lobe_goal(const StageContext& context, const Target& target) {
-  if (context.experiment.objective != SearchObjective::LobeCubeRoot) return std::nullopt;
+// The lobes to show, or to compare with where slopes are what is wanted.
+std::optional<LobeTarget> lobe_target_of(const StageContext& context, const Target& target) {
+  if (target.kind == "anisotropy") return std::nullopt;
   const SimulationSpecification& simulation = context.experiment.simulation;
   const DirectionGrid grid{simulation.resolution, simulation.resolution};
-  if (target.kind == "scan") {
-    return lobe_goal_of(read_gwy(context.folder / "target.gwy").field, simulation.material, simulation.incidences,
-                        grid);
-  }
-  LobeGoal goal{grid, simulation.material, simulation.incidences, {}};
+  std::vector<DirectionMap> maps;
+  std::optional<HeightField> relief;
+  if (target.kind == "scan") relief = read_gwy(context.folder / "target.gwy").field;
   for (const auto& incidence : simulation.incidences) {
-    goal.maps.push_back(reflection_map(lobe_of(target.slopes), simulation.material, incidence, grid));
+    maps.push_back(relief ? slope_reflection_map(*relief, simulation.material, incidence, grid)
+                          : reflection_map(lobe_of(target.slopes), simulation.material, incidence, grid));
   }
-  return goal;
+  return lobe_target(grid, simulation.material, simulation.incidences, maps, false);
 }
 
 DesignProblem problem_of(const StageContext& context, const Target& target) {
@@ -31,10 +33,14 @@ DesignProblem problem_of(const StageContext& context, const Target& target) {
           .free = experiment.pattern.free,
           .printer = experiment.printer,
           .patch = experiment.patch,
-          .search_draws = experiment.search_draws,
-          .fresh_draws = experiment.fresh_draws,
-          .search = experiment.search,
-          .lobe = lobe_goal(context, target)};
+          .search_draws = experiment.search.draws,
+          .fresh_draws = experiment.search.fresh_draws,
+          .search = experiment.search.minimize,
+          .objective = experiment.search.objective,
+          .lobes = lobe_target_of(context, target),
+          .by_light = is_by_light(experiment),
+          .log = context.folder / "evaluations.jsonl",
+          .log_digest = experiment_digest(experiment)};
 }
 
 Grid patch_grid(const Experiment& experiment) {

@@ -1,5 +1,7 @@
 #include <cmath>
 
+#include "experiments/run/design_file.h"
+#include "experiments/run/run_experiment.h"
 #include "experiments/run/run_files.h"
 #include "experiments/run/stages.h"
 #include "experiments/run/target_relief.h"
@@ -25,8 +27,8 @@ Target make_target(const StageContext& context, std::vector<std::string>& output
 std::vector<std::string> run_target(const StageContext& context) {
   std::vector<std::string> outputs = {"target.json"};
   Target target = make_target(context, outputs);
-  const bool is_lobe = context.experiment.objective == SearchObjective::LobeCubeRoot;
-  target.tolerance = context.experiment.target.tolerance.value_or(is_lobe ? HUGE_VAL : target.tolerance);
+  target.tolerance =
+      context.experiment.target.tolerance.value_or(is_by_light(context.experiment) ? HUGE_VAL : target.tolerance);
   target.rotation_tolerance = context.experiment.target.rotation_tolerance;
   write_json(to_json(target), context.folder / "target.json");
   return outputs;

@@ -6,48 +6,15 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "forward/process/row_blend.h"
 #include "forward/process/surrounding_pixel.h"
 
 namespace mezzotint {
 
 namespace {
 
-// Values at a time in the inner loops: the sum and a source stay in the first-level cache.
-constexpr std::size_t block = 2048;
-
-struct WeightedRow {
-  const float* values;
-  float weight;
-};
-
-void set_scaled(float* __restrict out, std::size_t count, WeightedRow a) {
-  for (std::size_t i = 0; i < count; ++i) out[i] = a.weight * a.values[i];
-}
-
 void add_scaled(float* __restrict out, std::size_t count, WeightedRow a) {
   for (std::size_t i = 0; i < count; ++i) out[i] += a.weight * a.values[i];
-}
-
-void add_pair(float* __restrict out, std::size_t count, WeightedRow a, WeightedRow b) {
-  for (std::size_t i = 0; i < count; ++i) out[i] += a.weight * a.values[i] + b.weight * b.values[i];
-}
-
-// out = Σ weight · row, always summed in the same order.
-void blend(std::span<const WeightedRow> rows, std::size_t count, float* out) {
-  if (rows.empty()) {
-    std::fill_n(out, count, 0.0F);
-    return;
-  }
-  const auto at = [](WeightedRow row, std::size_t start) { return WeightedRow{row.values + start, row.weight}; };
-  for (std::size_t start = 0; start < count; start += block) {
-    const std::size_t length = std::min(block, count - start);
-    set_scaled(out + start, length, at(rows[0], start));
-    for (std::size_t k = 1; k < rows.size(); k += 2) {
-      const bool alone = k + 1 == rows.size();
-      const WeightedRow second = alone ? WeightedRow{rows[k].values, 0.0F} : rows[k + 1];
-      add_pair(out + start, length, at(rows[k], start), at(second, start));
-    }
-  }
 }
 
 std::vector<float> padded(const float* pixels, std::size_t count, int reach, Surround surround) {

@@ -9,13 +9,11 @@
 #include "forward/pattern/octave_sum.h"
 #include "forward/pattern/sparse_noise.h"
 #include "forward/process/printed_relief.h"
+#include "inverse/design/printed_moments.h"
 
 namespace mezzotint {
 
 namespace {
-
-// The slopes of sparse convolution noise sit at wavelengths of about 1.3 cells.
-constexpr double noise_wavelength_per_scale = 1.3;
 
 double square(double value) { return value * value; }
 

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
 #include "forward/base/error.h"
 #include "forward/pattern/octave_sum.h"
-#include "forward/pattern/pattern_parameters.h"
-#include "inverse/design/closed_form_start.h"
 
 namespace mezzotint {
 
@@ -24,36 +23,17 @@ std::vector<std::uint64_t> consecutive_seeds(std::uint64_t first, std::size_t co
   return seeds;
 }
 
-const PatternParameter& table_entry(const Pattern& pattern, const FreeParameter& parameter) {
-  const auto& table = pattern_parameters(pattern);
-  const auto found = std::ranges::find(table, parameter.name, &PatternParameter::name);
-  require(found != table.end(),
-          fmt::format("a pattern of kind \"{}\" has no parameter \"{}\"", kind_name(pattern), parameter.name));
-  require(!found->whole,
-          fmt::format("{} is a whole number; a search cannot change it, so give it a value", parameter.name));
-  require(parameter.low >= found->lowest && parameter.high <= found->highest,
-          fmt::format("{}: the bounds must lie in [{}, {}]", parameter.name, found->lowest, found->highest));
-  return *found;
-}
-
-// An axis turned by half a turn is the same axis: bring the start between the bounds if that is possible.
-double into_bounds(double value, const FreeParameter& parameter) {
-  if (parameter.name == "direction_deg") {
-    while (value > parameter.high && value - 180.0 >= parameter.low) value -= 180.0;
-    while (value < parameter.low && value + 180.0 <= parameter.high) value += 180.0;
-  }
-  return std::clamp(value, parameter.low, parameter.high);
-}
-
-Pattern with_values(Pattern pattern, const std::vector<Variable>& variables, const std::vector<double>& values) {
-  for (std::size_t i = 0; i < variables.size(); ++i) set_parameter(pattern, variables[i].name, values[i]);
-  return pattern;
-}
+Length shortest_length(const Pattern& pattern);
 
 template <typename Kind>
 Length shortest(const Kind& kind) {
-  if constexpr (requires { octave_sum(kind); }) return kind.scale / octave_sum(kind).octaves.back().frequency;
-  return Length::from_um(HUGE_VAL);  // a composition, which is not searched
+  if constexpr (requires { octave_sum(kind); }) {
+    return kind.scale / octave_sum(kind).octaves.back().frequency;
+  } else {
+    Length least = Length::from_um(HUGE_VAL);
+    for (const PatternPart& part : kind.parts) least = std::min(least, shortest_length(part.pattern));
+    return least;
+  }
 }
 Length shortest(const LineIntegralConvolution& lines) { return lines.scale; }
 Length shortest(const Sinusoid& sinusoid) { return std::min(sinusoid.wavelength_u, sinusoid.wavelength_v); }
@@ -83,8 +63,8 @@ void warn_of_pixels(const DesignProblem& problem, Design& design) {
 void warn_of_bounds(Design& design) {
   for (std::size_t i = 0; i < design.variables.size(); ++i) {
     const Variable& variable = design.variables[i];
-    const double value = design.search.best.values[i], room = 1e-3 * (variable.high - variable.low);
-    if (variable.name == "direction_deg") continue;
+    const double value = design.search.values[i], room = 1e-3 * (variable.high - variable.low);
+    if (is_axis(variable)) continue;
     if (value < variable.low + room || value > variable.high - room) {
       design.warnings.push_back(fmt::format("{} = {:.4g} stands at its bound [{}, {}]; the target may need more room",
                                             variable.name, value, variable.low, variable.high));
@@ -92,22 +72,27 @@ void warn_of_bounds(Design& design) {
   }
 }
 
-void warn_of_overfit(const DesignProblem& problem, Design& design) {
-  if (problem.lobe) return;  // the two figures are of different kinds
-  const double held_out = covariance_distance(mean_of(design.fresh_covariances).mean, problem.target);
-  const double noise = 2.0 * std::pow(design.on_fresh_draws.rms_major_error / design.on_fresh_draws.axes.rms_major, 2) +
-                       2.0 * std::pow(design.on_fresh_draws.rms_minor_error / design.on_fresh_draws.axes.rms_minor, 2);
-  if (held_out > design.search.best.objective + 9.0 * 4.0 * noise) {
-    design.warnings.push_back(
-        "the fresh draws are further off than their own scatter explains: the search fitted its draws; give it more "
-        "draws or a larger patch");
+// Held-out ÷ trained, of roots.
+void warn_of_overfit(Design& design) {
+  for (const JudgedDistance& distance : design.distances) {
+    const double train = std::max(distance.on_search_draws, distance.floor), held_out = distance.on_fresh_draws.value,
+                 noise = distance.fresh_floor;
+    const bool lowered = std::ranges::any_of(
+        design.search.lowered, [&](const WeightedMeasure& term) { return term.measure == distance.measure; });
+    if (lowered && held_out > 1.3 * 1.3 * train + 9.0 * noise) {
+      design.warnings.push_back(
+          fmt::format("on draws that the search has not seen the root of {} is {:.2g} times that on its own: it fitted "
+                      "its draws; give "
+                      "it more draws or a larger patch",
+                      name_of(distance.measure), std::sqrt(held_out / train)));
+    }
   }
 }
 
 // Every draw is off by its own chance; the judgement is on all of them, but one has to be printed.
 std::uint64_t closest_draw(const DesignProblem& problem, const Design& design) {
   Target target = problem.target;
-  if (problem.lobe) target.slopes = design.on_fresh_draws.axes;
+  if (problem.by_light) target.slopes = design.on_fresh_draws.axes;
   std::size_t best = 0;
   for (std::size_t i = 1; i < design.fresh_seeds.size(); ++i) {
     const auto distance = [&](std::size_t k) { return covariance_distance(design.fresh_covariances[k], target); };
@@ -116,28 +101,55 @@ std::uint64_t closest_draw(const DesignProblem& problem, const Design& design) {
   return design.fresh_seeds[best];
 }
 
-double mean_lobe_error(const PrintedTexture& texture, const Pattern& pattern, const LobeGoal& lobe) {
-  return cube_root_error(printed_lobes(texture, pattern, GrayLevels::Continuous, lobe), lobe).value;
+// Draws that no search has met: other places of the samples, the printer's levels, a ground of their own.
+SlopeModel fresh_model(const DesignProblem& problem, const std::vector<std::uint64_t>& seeds) {
+  return {problem.printer,
+          problem.patch,
+          seeds,
+          problem.lobes,
+          {.levels = GrayLevels::Quantized, .drawn_ground = true, .place_x = 0.23, .place_y = 0.71}};
 }
 
-MinimizeResult run_search(const DesignProblem& problem, Design& design, const Progress& progress) {
-  const PrintedTexture texture(problem.printer, problem.patch, search_seeds(problem));
-  const auto objective = [&](const std::vector<double>& values) {
-    const Pattern pattern = with_values(problem.pattern, design.variables, values);
-    if (problem.lobe) return mean_lobe_error(texture, pattern, *problem.lobe);
-    return covariance_distance(mean_of(texture.slope_covariances(pattern, GrayLevels::Continuous)).mean,
-                               problem.target);
-  };
-  const auto observer = [&](int evaluation, const SearchStep& step) {
-    design.history.push_back(step);
-    report(progress, "search", static_cast<double>(evaluation) / problem.search.max_evaluations,
-           fmt::format("evaluation {}, distance {:.2e}", evaluation, step.objective));
-  };
-  MinimizeResult result = minimize(design.variables, objective, problem.search, observer);
-  const Pattern best = with_values(problem.pattern, design.variables, result.best.values);
-  design.on_search_draws = estimate_axes(texture.slope_covariances(best, GrayLevels::Continuous));
-  report(progress, "search", 1.0, fmt::format("{} evaluations, {}", result.evaluations, result.outcome));
-  return result;
+Estimate jackknife(const DesignGoal& goal, Measure measure, const std::vector<SlopeModel::Shown>& draws) {
+  const double value = goal.distance(measure, mean_of(draws));
+  const auto n = static_cast<double>(draws.size());
+  double spread = 0.0;
+  for (std::size_t left_out = 0; left_out < draws.size(); ++left_out) {
+    std::vector<SlopeModel::Shown> others = draws;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(left_out));
+    spread += std::pow(goal.distance(measure, mean_of(others)) - value, 2);
+  }
+  return {value, std::sqrt(spread * (n - 1.0) / n)};
+}
+
+double value_of(const std::vector<MeasuredDistance>& distances, Measure measure) {
+  const auto found = std::ranges::find(distances, measure, &MeasuredDistance::measure);
+  return found == distances.end() ? std::numeric_limits<double>::quiet_NaN() : found->value;
+}
+
+void judge(const DesignGoal& goal, const std::vector<SlopeModel::Shown>& searched,
+           const std::vector<SlopeModel::Shown>& fresh, Design& design) {
+  const std::vector<MeasuredDistance> on_search = goal.all(mean_of(searched)), floors = noise_floors(goal, searched),
+                                      fresh_floors = noise_floors(goal, fresh);
+  for (const MeasuredDistance& trained : on_search) {
+    design.distances.push_back({trained.measure, trained.value, value_of(floors, trained.measure),
+                                jackknife(goal, trained.measure, fresh), value_of(fresh_floors, trained.measure)});
+    if (trained.measure != Measure::CubeRoot || !goal.by_light()) continue;
+    const Estimate& square = design.distances.back().on_fresh_draws;
+    const double root = std::sqrt(square.value);
+    design.fresh_lobe_error = Estimate{root, 0.5 * square.standard_error / root};
+  }
+}
+
+std::vector<SlopeCovariance> covariances_of(const std::vector<SlopeModel::Shown>& draws) {
+  std::vector<SlopeCovariance> covariances;
+  covariances.reserve(draws.size());
+  for (const SlopeModel::Shown& draw : draws) covariances.push_back(draw.covariance);
+  return covariances;
+}
+
+SearchPlan plan_of(const DesignProblem& problem) {
+  return {.search = problem.search, .objective = problem.objective, .seeds = search_seeds(problem)};
 }
 
 }  // namespace
@@ -153,40 +165,35 @@ std::vector<std::uint64_t> fresh_seeds(const DesignProblem& problem) {
 }
 
 std::vector<Variable> search_variables(const DesignProblem& problem) {
-  require(parts_of(problem.pattern) == nullptr,
-          fmt::format("a composed pattern (\"{}\") cannot be searched yet; search one of its parts",
-                      kind_name(problem.pattern)));
-  const Pattern start = closed_form_start(problem.pattern, problem.target, problem.printer, problem.patch.wavelength);
-  std::vector<Variable> variables;
-  for (const auto& parameter : problem.free) {
-    const PatternParameter& entry = table_entry(problem.pattern, parameter);
-    const double value = parameter.start.value_or(into_bounds(get_parameter(start, parameter.name), parameter));
-    variables.push_back({parameter.name, parameter.low, parameter.high, value, entry.logarithmic});
-  }
-  return variables;
+  return design_variables(problem.pattern, problem.free, problem.target, problem.printer, problem.patch.wavelength);
 }
 
 Design find_design(const DesignProblem& problem, const Progress& progress) {
+  const DesignGoal goal(problem.target, problem.lobes, problem.by_light);
   Design design;
   design.variables = search_variables(problem);
-  design.search = run_search(problem, design, progress);
-  design.pattern = with_values(problem.pattern, design.variables, design.search.best.values);
+  const SearchPlan plan = plan_of(problem);
+  std::optional<EvaluationLog> log;
+  if (!problem.log.empty()) log.emplace(problem.log, problem.log_digest);
+  design.search = search_pattern(goal, problem.pattern, design.variables, problem.printer, problem.patch, plan,
+                                 log ? &*log : nullptr, progress);
+  design.pattern = with_values(problem.pattern, design.variables, design.search.values);
+  design.warnings = design.search.warnings;
 
+  const auto searched = SlopeModel(problem.printer, problem.patch, plan.seeds, problem.lobes).draws(design.pattern);
+  design.on_search_draws = estimate_axes(covariances_of(searched));
   design.fresh_seeds = fresh_seeds(problem);
-  const PrintedTexture fresh(problem.printer, problem.patch, design.fresh_seeds);
-  design.fresh_covariances = fresh.slope_covariances(design.pattern, GrayLevels::Quantized);
+  const auto fresh = fresh_model(problem, design.fresh_seeds).draws(design.pattern);
+  design.fresh_covariances = covariances_of(fresh);
   design.on_fresh_draws = estimate_axes(design.fresh_covariances);
   design.print_seed = closest_draw(problem, design);
   design.fresh_error = target_error(mean_of(design.fresh_covariances).mean, problem.target);
-  design.met = is_met(design.fresh_error, problem.target);
-  if (problem.lobe) {
-    const auto lobes = printed_lobes(fresh, design.pattern, GrayLevels::Quantized, *problem.lobe);
-    design.fresh_lobe_error = cube_root_error(lobes, *problem.lobe);
-    design.met = design.fresh_lobe_error->value <= problem.target.tolerance;
-  }
+  judge(goal, searched, fresh, design);
+  design.met = problem.by_light ? design.fresh_lobe_error->value <= problem.target.tolerance
+                                : is_met(design.fresh_error, problem.target);
   warn_of_pixels(problem, design);
   warn_of_bounds(design);
-  warn_of_overfit(problem, design);
+  warn_of_overfit(design);
   return design;
 }
 

@@ -1,25 +1,18 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "forward/base/progress.h"
-#include "inverse/design/lobe_goal.h"
+#include "inverse/design/design_variables.h"
+#include "inverse/design/pattern_search.h"
 #include "inverse/design/printed_texture.h"
-#include "inverse/search/minimize.h"
 #include "inverse/target/target.h"
 
 namespace mezzotint {
-
-/// A parameter that the search may change, by the name that the pattern's table gives it.
-struct FreeParameter {
-  std::string name;
-  double low = 0.0;
-  double high = 0.0;
-  std::optional<double> start;  ///< left out: the closed-form start
-};
 
 /// Everything that a search needs to know.
 struct DesignProblem {
@@ -31,17 +24,29 @@ struct DesignProblem {
   std::size_t search_draws = 8;  ///< draws whose mean covariance the search sees, the same ones at every step
   std::size_t fresh_draws = 12;  ///< other draws, on which the result is judged
   MinimizeOptions search;
-  /// Given: the search lowers the cube-root error of the printed lobe, and `target.tolerance` is for that. Left
-  /// out: it lowers the distance of the slope covariances, and the tolerance is for their variances.
-  std::optional<LobeGoal> lobe;
+  MeasureSum objective;             ///< what the search lowers; empty: it chooses (search_pattern)
+  std::optional<LobeTarget> lobes;  ///< the lobes to show; left out: none is compared
+  /// The lobes are what is wanted, and `target.tolerance` is for their cube-root error; else the slopes are, and it is
+  /// for their variances.
+  bool by_light = false;
+  std::filesystem::path log;  ///< of all evaluations, to go on from; empty: none
+  std::string log_digest;     ///< stands for all of the problem in the log, which is refused for another
+};
+
+/// A measure on the search's own draws and on fresh ones. All are squares.
+struct JudgedDistance {
+  Measure measure = Measure::SlopeCovariance;
+  double on_search_draws = 0.0;  ///< gray levels continuous
+  double floor = 0.0;            ///< what the search draws' own scatter gives it
+  Estimate on_fresh_draws;       ///< as printed; standard error by delete-one jackknife over the draws
+  double fresh_floor = 0.0;
 };
 
 /// What was found.
 struct Design {
   Pattern pattern;
   std::vector<Variable> variables;
-  std::vector<SearchStep> history;
-  MinimizeResult search;
+  SearchOutcome search;
   SlopeAxesEstimate on_search_draws;  ///< gray levels continuous, the draws that were searched on
   SlopeAxesEstimate on_fresh_draws;   ///< quantised to the printer's levels, draws that the search never saw
   std::vector<SlopeCovariance> fresh_covariances;
@@ -49,23 +54,21 @@ struct Design {
   /// The fresh draw to print: its own covariance is closest to the target's (with a lobe: to the mean's).
   std::uint64_t print_seed = 0;
   TargetError fresh_error;
-  std::optional<Estimate> fresh_lobe_error;  ///< cube-root error on the fresh draws, where a lobe is the goal
+  std::vector<JudgedDistance> distances;     ///< of every measure that the problem has
+  std::optional<Estimate> fresh_lobe_error;  ///< √ of the cube root's on the fresh draws, of a lobe target
   bool met = false;
   /// In words: saturated pixels, wavelengths under 4 pixels, a bound that was hit, an overfit to the search's draws.
   std::vector<std::string> warnings;
 };
 
-/// The parameters of the pattern whose print comes closest to the target.
-///
-/// Method   NLopt on `covariance_distance` of the mean covariance (or the cube-root error of the mean lobe) of
-///          `search_draws` printed patches: pattern → gray → light → cure height → ground, with common random
-///          numbers and continuous gray levels; the best point is evaluated again on `fresh_draws` other draws
-///          with the printer's gray levels.
-/// @throws InvalidInput for an impossible problem (unknown or whole parameter, bounds outside of its range, a composed
-///         pattern: nothing of it can be searched yet).
+/// The parameters of the pattern whose print comes closest to the target: search_pattern, then judged on draws that it
+/// has not seen, with the printer's gray levels and real draws of its ground.
+/// @throws InvalidInput for an impossible problem (unknown or whole parameter, bounds outside of its range); FileError
+/// for
+///         a log that belongs to another; what `progress` throws. With a log it can go on then.
 [[nodiscard]] Design find_design(const DesignProblem& problem, const Progress& progress = {});
 
-/// The problem's variables with their starts: explicit ones, closed-form ones cut to the bounds.
+/// The problem's variables with their starts.
 [[nodiscard]] std::vector<Variable> search_variables(const DesignProblem& problem);
 
 /// Seeds of the draws: `search_seeds` and `fresh_seeds` never share one.

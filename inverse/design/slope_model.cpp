@@ -1,6 +1,10 @@
 #include "inverse/design/slope_model.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 #include <tbb/parallel_for.h>
 
@@ -16,36 +20,57 @@ const PatchOptions& checked(const PatchOptions& patch, const std::vector<std::ui
   return patch;
 }
 
-SlopeCovariance covariance_about_mean(const ReliefSlopes& slopes) {
-  double x = 0.0, y = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
-  for (std::size_t i = 0; i < slopes.x.size(); ++i) {
-    const double p = slopes.x[i], q = slopes.y[i];
-    x += p;
-    y += q;
-    xx += p * p;
-    yy += q * q;
-    xy += p * q;
+// Sums of slopes and of their products, some at a time: each has sums of its own, so that none waits for another.
+struct SlopeSums {
+  static constexpr std::size_t lanes = 8;
+  using Lanes = std::array<double, lanes>;
+  Lanes x{}, y{}, xx{}, yy{}, xy{};
+
+  void add(const float* slopes_x, const float* slopes_y, std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) {
+      const double p = slopes_x[k], q = slopes_y[k];
+      x[k] += p;
+      y[k] += q;
+      xx[k] += p * p;
+      yy[k] += q * q;
+      xy[k] += p * q;
+    }
   }
-  const auto n = static_cast<double>(slopes.x.size());
-  return {xx / n - x * x / (n * n), yy / n - y * y / (n * n), xy / n - x * y / (n * n)};
+  static double total(const Lanes& sums) { return std::accumulate(sums.begin(), sums.end(), 0.0); }
+};
+
+SlopeCovariance covariance_about_mean(const ReliefSlopes& slopes) {
+  SlopeSums sums;
+  const std::size_t points = slopes.x.size();
+  std::size_t i = 0;
+  for (; i + SlopeSums::lanes <= points; i += SlopeSums::lanes)
+    sums.add(slopes.x.data() + i, slopes.y.data() + i, SlopeSums::lanes);
+  sums.add(slopes.x.data() + i, slopes.y.data() + i, points - i);
+  const auto n = static_cast<double>(points);
+  const double x = SlopeSums::total(sums.x) / n, y = SlopeSums::total(sums.y) / n;
+  return {SlopeSums::total(sums.xx) / n - x * x, SlopeSums::total(sums.yy) / n - y * y,
+          SlopeSums::total(sums.xy) / n - x * y};
 }
 
 }  // namespace
 
 SlopeModel::SlopeModel(const PrinterProfile& printer, const PatchOptions& patch, std::vector<std::uint64_t> seeds,
-                       const std::optional<LobeTarget>& lobes)
+                       const std::optional<LobeTarget>& lobes, const SlopeModelOptions& options)
     : printer_(printer),
       patch_(checked(patch, seeds)),
+      options_(options),
       seeds_(std::move(seeds)),
-      process_(patch.pixels, patch.pixels, printer, {patch.subsamples, Surround::Mirror}),
-      ground_rms_slope_(ground_rms_slope(printer, split_ground(printer, patch.wavelength).geometric)) {
+      process_(patch.pixels, patch.pixels, printer,
+               {patch.subsamples, Surround::Mirror, options.place_x, options.place_y}),
+      ground_(split_ground(printer, patch.wavelength).geometric),
+      mean_ground_(options.drawn_ground ? 0.0 : ground_rms_slope(printer, ground_)) {
   if (!lobes) return;
   grid_ = lobes->grid;
   for (const DirectionAngles& incidence : lobes->incidences) {
     lobes_.emplace_back(lobes->grid, lobes->material, incidence);
     // Near the mirror direction a slope moves light by 2·cosθ_i of it; a bin is 2/width wide.
     const double bins =
-        std::cos(incidence.theta.radians()) * ground_rms_slope_ * static_cast<double>(lobes->grid.grid().width);
+        std::cos(incidence.theta.radians()) * mean_ground_ * static_cast<double>(lobes->grid.grid().width);
     variances_.push_back(bins * bins);
   }
 }
@@ -56,13 +81,22 @@ double SlopeModel::samples() const {
 }
 
 ReliefSlopes SlopeModel::printed_slopes(const Pattern& pattern, std::uint64_t seed) const {
-  return process_.slopes(expose(pixel_heights(draw_instance(pattern, seed), printer_, patch_.pixels), printer_).image);
+  const GrayImage gray = expose(pixel_heights(draw_instance(pattern, seed), printer_, patch_.pixels), printer_).image;
+  ReliefSlopes slopes = process_.slopes(options_.levels == GrayLevels::Quantized ? quantize(gray, printer_) : gray);
+  if (!options_.drawn_ground) return slopes;
+  const Length pitch = printer_.pixel_pitch / static_cast<double>(patch_.subsamples);
+  const std::size_t side = patch_.pixels * patch_.subsamples;
+  const ReliefSlopes ground = ground_slopes(
+      {side, side, pitch, pitch}, {pitch * options_.place_x, pitch * options_.place_y}, printer_, ground_, seed);
+  std::ranges::transform(slopes.x, ground.x, slopes.x.begin(), std::plus<float>());
+  std::ranges::transform(slopes.y, ground.y, slopes.y.begin(), std::plus<float>());
+  return slopes;
 }
 
 SlopeModel::Shown SlopeModel::shown_by(const ReliefSlopes& slopes) const {
   Shown shown{covariance_about_mean(slopes), {}};
-  shown.covariance.xx += ground_rms_slope_ * ground_rms_slope_;
-  shown.covariance.yy += ground_rms_slope_ * ground_rms_slope_;
+  shown.covariance.xx += mean_ground_ * mean_ground_;
+  shown.covariance.yy += mean_ground_ * mean_ground_;
   for (std::size_t light = 0; light < lobes_.size(); ++light)
     shown.maps.push_back(grid_->scattered(lobes_[light].map(slopes.x, slopes.y), variances_[light]));
   return shown;

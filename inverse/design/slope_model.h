@@ -16,21 +16,27 @@
 
 namespace mezzotint {
 
+/// How a relief is met.
+struct SlopeModelOptions {
+  GrayLevels levels = GrayLevels::Continuous;
+  bool drawn_ground = false;  ///< each draw on a ground of its own, as printed; else the mean over all grounds
+  double place_x = 0.5, place_y = 0.5;  ///< of the samples in their sub-pixels
+};
+
 /// What a printed pattern shows by its slopes alone: the model that a search asks at every step.
 ///
-/// Method   pattern → gray (continuous) → light → slopes of the cured relief at points → their covariance, and the
-/// light
-///          that they reflect, in soft bins; the mean over some draws of the pattern, the same ones at every step
-///          (common random numbers). The printer's ground comes in by its mean over all draws: its variance is added to
-///          the slopes', and the lobes are scattered by it. Draws of it would be learned by heart.
-/// Leaves out  shadows, further reflections, the printer's rounding to gray levels.
+/// Method   pattern → gray → light → slopes of the cured relief at points → their covariance, and the light that they
+///          reflect, in soft bins; the mean over some draws of the pattern, the same ones at every step (common random
+///          numbers). The printer's ground comes in by its mean over all draws: its variance is added to the slopes',
+///          and the lobes are scattered by it. A search would learn draws of it by heart; a verdict wants them.
+/// Leaves out  shadows and further reflections; while it searches, the rounding to gray levels.
 /// Threads  the same bits with any number of them.
 class SlopeModel {
 public:
   /// @param lobes  the light and the bins of the maps; nullopt: no maps are made
   /// @throws InvalidInput for a patch out of range, or no seed.
   SlopeModel(const PrinterProfile& printer, const PatchOptions& patch, std::vector<std::uint64_t> seeds,
-             const std::optional<LobeTarget>& lobes);
+             const std::optional<LobeTarget>& lobes, const SlopeModelOptions& options = {});
 
   struct Shown {
     SlopeCovariance covariance;      ///< of the slopes about each draw's mean, the ground's included
@@ -48,6 +54,7 @@ public:
   /// there are (synthesize_with_derivatives says where patterns have edges).
   /// @param names   of the numbers, by their paths
   /// @param slopes  are set, one a name, in the unit that the name says
+  /// @throws InvalidInput for a name that has no slope, rounded gray levels, or a drawn ground.
   [[nodiscard]] double figure_with_slopes(const Pattern& pattern, std::span<const std::string> names,
                                           const Figure& figure, std::vector<double>& slopes) const;
 
@@ -62,9 +69,11 @@ private:
 
   PrinterProfile printer_;
   PatchOptions patch_;
+  SlopeModelOptions options_;
   std::vector<std::uint64_t> seeds_;
   PrintProcess process_;
-  double ground_rms_slope_ = 0.0;
+  std::vector<GroundOctave> ground_;  // that is geometry
+  double mean_ground_ = 0.0;          // RMS slope of what comes in by its mean
   std::optional<SmoothGrid> grid_;
   std::vector<SmoothLobe> lobes_;  // one a direction of the light
   std::vector<double> variances_;  // of the ground's scatter, in squared bins, the same way

@@ -39,17 +39,24 @@ void walk(const DirectionGrid& grid, std::vector<double>& light, double variance
   const auto steps = static_cast<std::size_t>(std::ceil(2.0 * variance));
   const double chance = variance / (2.0 * static_cast<double>(std::max<std::size_t>(1, steps)));
   std::vector<double> next(light.size());
-  const auto along = [&](std::size_t stride, std::size_t count) {
-    for (std::size_t k = 0; k < light.size(); ++k) {
-      const std::size_t place = k / stride % count;
-      const double before = light[place == 0 ? k : k - stride], after = light[place + 1 == count ? k : k + stride];
-      next[k] = light[k] + chance * (before - 2.0 * light[k] + after);
-    }
-    light.swap(next);
+  const auto step_to = [&](std::size_t k, std::size_t before, std::size_t after) {
+    next[k] = light[k] + chance * (light[before] - 2.0 * light[k] + light[after]);
+  };
+  const auto along_rows = [&](std::size_t first) {
+    const std::size_t last = first + grid.width - 1;
+    step_to(first, first, first + 1);
+    for (std::size_t k = first + 1; k < last; ++k) step_to(k, k - 1, k + 1);
+    step_to(last, last - 1, last);
+  };
+  const auto along_columns = [&](std::size_t row) {
+    const std::size_t down = row == 0 ? 0 : grid.width, up = row + 1 == grid.height ? 0 : grid.width;
+    for (std::size_t k = row * grid.width; k < (row + 1) * grid.width; ++k) step_to(k, k - down, k + up);
   };
   for (std::size_t step = 0; step < steps; ++step) {
-    along(1, grid.width);
-    along(grid.width, grid.height);
+    for (std::size_t row = 0; row < grid.height; ++row) along_rows(row * grid.width);
+    light.swap(next);
+    for (std::size_t row = 0; row < grid.height; ++row) along_columns(row);
+    light.swap(next);
   }
 }
 

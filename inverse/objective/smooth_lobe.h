@@ -1,10 +1,10 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "forward/optics/direction.h"
 #include "forward/optics/material.h"
+#include "inverse/objective/lobe_kernels.h"
 #include "inverse/objective/smooth_grid.h"
 
 namespace mezzotint {
@@ -31,13 +31,8 @@ public:
                              std::span<float> toward_y) const;
 
 private:
-  struct Sent;
-  [[nodiscard]] Sent sent(double slope_x, double slope_y) const;
-  void add_light(std::span<const float> slopes_x, std::span<const float> slopes_y, std::vector<double>& light) const;
-
   SmoothGrid grid_;
-  Direction to_light_;
-  std::vector<double> reflectance_;  // by the cosine, at even steps
+  LobePlan plan_;
 };
 
 }  // namespace mezzotint

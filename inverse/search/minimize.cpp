@@ -16,7 +16,6 @@ namespace {
 
 // What is not finite must be worse than everything, but a number that model-building algorithms can digest.
 constexpr double penalty = 1e30;
-constexpr double initial_step = 0.1;  // of the unit cube in which NLopt works
 
 struct NloptDeleter {
   void operator()(nlopt_opt optimizer) const { nlopt_destroy(optimizer); }
@@ -146,7 +145,8 @@ Optimizer make_optimizer(const std::string& name, unsigned count, const Minimize
   nlopt_set_upper_bounds1(optimizer.get(), 1.0);
   // On the unit cube a relative tolerance of the variables is an absolute one; AUGLAG and MLSL crash without it.
   nlopt_set_xtol_abs1(optimizer.get(), options.relative_tolerance);
-  nlopt_set_initial_step1(optimizer.get(), initial_step);
+  nlopt_set_initial_step1(optimizer.get(), options.initial_step);
+  nlopt_set_stopval(optimizer.get(), options.good_enough);
   return optimizer;
 }
 
@@ -158,7 +158,7 @@ std::string in_words(nlopt_result result, bool ran_out) {
     case NLOPT_XTOL_REACHED:
       return "converged to the tolerance";
     case NLOPT_STOPVAL_REACHED:
-      return "the objective cannot go lower";
+      return "the objective is as low as was asked for";
     case NLOPT_ROUNDOFF_LIMITED:
       return "no further progress: limited by rounding";
     default:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -23,6 +24,8 @@ struct MinimizeOptions {
   std::string algorithm = "LN_BOBYQA";
   int max_evaluations = 300;
   double relative_tolerance = 1e-3;  ///< of the variables, in the search's own (logarithmic) scale
+  double initial_step = 0.1;         ///< share of each variable's range that the first steps take
+  double good_enough = -HUGE_VAL;    ///< an objective below it ends the search
   std::uint64_t seed = 1;            ///< for NLopt's random algorithms
 };
 

@@ -119,18 +119,20 @@ Parametric best_pattern(const DirectionMap& wanted, const PrinterProfile& printe
     problem.printer = printer;
     problem.patch = {.pixels = tile_pixels, .subsamples = 3};
     problem.search_draws = 2;
-    problem.lobe = LobeGoal{bins, material, {straight}, {wanted}};
+    problem.lobes = lobe_target(bins, material, {straight}, {wanted}, false);
+    problem.by_light = true;
+    problem.objective = {{Measure::CubeRoot, 1.0}};
     const int share = budget / static_cast<int>(families().size());
     problem.search = {.algorithm = "GN_CRS2_LM", .max_evaluations = 2 * share / 3, .seed = 1};
     const Design global = find_design(problem);
     for (FreeParameter& parameter : problem.free) parameter.start = get_parameter(global.pattern, parameter.name);
     problem.search = {.algorithm = "LN_BOBYQA", .max_evaluations = share / 3, .seed = 1};
     const Design local = find_design(problem);
-    const Design& found = local.search.best.objective < global.search.best.objective ? local : global;
+    const Design& found = local.search.objective < global.search.objective ? local : global;
     const HeightField heights = pixel_heights(draw_instance(found.pattern, found.print_seed), printer, tile_pixels);
     const Errors errors = traced(expose(heights, printer).image, Surround::Mirror, printer, wanted);
     std::printf("  %-10s %4d evaluations, traced: cube root %.3f, L2 %.3f\n", family.name.c_str(),
-                global.search.evaluations + local.search.evaluations, errors.cube_root, errors.l2);
+                static_cast<int>(global.search.cost + local.search.cost), errors.cube_root, errors.l2);
     if (errors.cube_root < best.errors.cube_root) best = {family.name, errors};
   }
   return best;
