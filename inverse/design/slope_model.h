@@ -54,6 +54,7 @@ public:
   /// there are (synthesize_with_derivatives says where patterns have edges).
   /// @param names   of the numbers, by their paths
   /// @param slopes  are set, one a name, in the unit that the name says
+  /// @throws InvalidInput for a name that has no slope, rounded gray levels, or a drawn ground.
   [[nodiscard]] double figure_with_slopes(const Pattern& pattern, std::span<const std::string> names,
                                           const Figure& figure, std::vector<double>& slopes) const;
 

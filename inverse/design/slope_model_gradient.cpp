@@ -56,6 +56,8 @@ ReliefSlopes SlopeModel::slopes_toward(const ReliefSlopes& slopes, const Shown& 
 
 double SlopeModel::figure_with_slopes(const Pattern& pattern, std::span<const std::string> names, const Figure& figure,
                                       std::vector<double>& slopes) const {
+  require(options_.levels == GrayLevels::Continuous && !options_.drawn_ground,
+          "slopes go through continuous gray levels and the mean ground, as a search sees them");
   std::vector<std::optional<Printed>> printed(seeds_.size());
   std::vector<Shown> draws(seeds_.size());
   tbb::parallel_for(std::size_t{0}, seeds_.size(), [&](std::size_t i) {
