@@ -189,7 +189,7 @@ json target_table(const GamutFindings& findings) {
   return table(
       {.title = "Asked targets",
        .caption = "*Nearest* in the logarithms of the slope covariance. `gamut.json` has every kind's verdict."},
-      {"α_x, α_y", "Printed by", "Best kind", "Nearest", "Its parameters"}, rows);
+      {"α_x, α_y", "Printed by", "Why", "Nearest", "Its parameters"}, rows);
 }
 
 json kind_table(const GamutFindings& findings) {

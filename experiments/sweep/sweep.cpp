@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 // Short against any task, and long enough to leave the core to the tasks.
-constexpr auto pause = 500us;
+constexpr auto pause = 2ms;
 constexpr auto between_reports = 100ms;
 
 struct Failure {

@@ -9,7 +9,6 @@ constexpr const char* small_gamut = "gamut printer.toml --pattern sinusoid --ray
 
 TEST(GamutCommand, SaysWhatCanBePrintedAndDrawsIt) {
   const Workplace here;
-  here.write("printer.toml", "name = \"dlp9000\"\n");
   const Ending ending = here.mezzotint(words(std::string(small_gamut) + " --target 0.3,0.2"));
   ASSERT_EQ(ending.status, 0) << ending.err;
   const auto said = nlohmann::json::parse(ending.out);
@@ -25,7 +24,6 @@ TEST(GamutCommand, SaysWhatCanBePrintedAndDrawsIt) {
 
 TEST(GamutCommand, EndsWith3WhereATargetCannotBePrinted) {
   const Workplace here;
-  here.write("printer.toml", "name = \"dlp9000\"\n");
   const Ending ending = here.mezzotint(words(std::string(small_gamut) + " --target 0.3,0.2 --target 0.3,0.005"));
   EXPECT_EQ(ending.status, 3) << ending.err;
   const auto target = nlohmann::json::parse(ending.out).at("targets").at(1);
@@ -38,7 +36,6 @@ TEST(GamutCommand, EndsWith3WhereATargetCannotBePrinted) {
 
 TEST(GamutCommand, RefusesBadInput) {
   const Workplace here;
-  here.write("printer.toml", "name = \"dlp9000\"\n");
   const auto refused = [&](const std::string& more, const char* says) {
     const Ending ending = here.mezzotint(words("gamut printer.toml -o out " + more));
     EXPECT_EQ(ending.status, 2) << ending.err;

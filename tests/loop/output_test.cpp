@@ -25,6 +25,7 @@ const std::vector<std::string> every_command = {
     "convert relief.gwy relief.obj",
     "mesh relief.gwy -o mesh.obj",
     "chart --families sinusoid --cells 64 --resolution 8 --gradients 0.1 --incidences 0 -o chart",
+    "gamut printer.toml --pattern ridges --rays 2 --target 0.3,0.0122 -o gamut",
     "bsdf relief.gwy --incidence 20,0 --samples 1e4 -o lobe.exr --report lobe.html",
     "bsdf mesh.obj --incidence 20,0 --samples 1e4 --material conductor:0.2,3.9/0.9,2.4/1.1,1.9 -o colour.exr",
     "info mesh.obj",

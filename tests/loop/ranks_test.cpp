@@ -29,7 +29,6 @@ protected:
   void SetUp() override {
     if (!MEZZOTINT_HAS_MPI) GTEST_SKIP() << "built without MPI (libopenmpi-dev)";
     if (!mpirun_is_there()) GTEST_SKIP() << "mpirun is not installed (openmpi-bin)";
-    here.write("printer.toml", "name = \"dlp9000\"\n");
   }
   Workplace here;
 };

@@ -72,6 +72,7 @@ std::string bytes_of(const fs::path& path) {
 Workplace::Workplace() {
   write("small.toml", experiment);
   write("pattern.toml", pattern);
+  write("printer.toml", "name = \"dlp9000\"\n");
 }
 
 Ending Workplace::mezzotint(const std::vector<std::string>& arguments, const Conditions& conditions) const {

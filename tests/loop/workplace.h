@@ -15,9 +15,10 @@ namespace mezzotint::test {
 /// Files by their path within a folder, with their bytes.
 using Files = std::map<std::string, std::string>;
 
-/// An empty folder to work in, but for two small inputs:
+/// An empty folder to work in, but for small inputs:
 ///   small.toml    an experiment whose whole loop takes about a second, and whose target can be met
 ///   pattern.toml  a pattern of 64 × 64 samples
+///   printer.toml  the slides' printer
 class Workplace {
 public:
   Workplace();
