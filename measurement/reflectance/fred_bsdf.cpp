@@ -110,7 +110,7 @@ private:
       }
     }
     PolarLobes lobes{PolarLobes::Axis::Normal, one_sided, one_plane, false, {}};
-    for (const FredBlock& block : blocks_) lobes.lobes.push_back(lobe_of(block, one_sided));
+    for (const FredBlock& block : blocks_) lobes.lobes.push_back(lobe_of(block, one_sided, one_plane));
     measured_.isotropic = one_plane;
     if (one_plane) measured_.assumption = "isotropic, since the light comes from one azimuth only";
     measured_.channels = {{"BSDF", {}}};
@@ -118,7 +118,7 @@ private:
     measured_.data = std::move(lobes);
   }
 
-  [[nodiscard]] PolarLobe lobe_of(const FredBlock& block, bool one_sided) const {
+  [[nodiscard]] PolarLobe lobe_of(const FredBlock& block, bool one_sided, bool one_plane) const {
     const auto fail = [&](const std::string& problem) {
       throw FileError(path_, fmt::format("line {}", block.line), problem);
     };
@@ -137,8 +137,9 @@ private:
                       "quarter or more is needed",
                       block.samples.size(), cells));
     }
-    // The file names the mirrored ray; the light comes from the other side.
-    PolarLobe lobe{{Angle::from_degrees(block.theta_i), Angle::from_degrees(block.phi_i + 180.0)}, {}, {}, {}};
+    // The file names the mirrored ray; the light comes from the other side, or from anywhere.
+    const Angle phi = one_plane ? Angle{} : Angle::from_degrees(block.phi_i + 180.0);
+    PolarLobe lobe{{Angle::from_degrees(block.theta_i), phi}, {}, {}, {}};
     std::vector<double> values(cells, not_measured);
     for (const FredSample& sample : block.samples) place(sample, one_sided, radials, azimuths, values);
     if (!one_sided) close_turn(azimuths, values, radials.size());
