@@ -26,15 +26,15 @@ struct FreeFormOptions {
   int start_evaluations = 12;  ///< of each of three trials from every start
   int evaluations = 240;       ///< from each of the best two; the best four starts get a quarter of them
   int evaluations_per_epoch = 20;
-  /// What is lowered up to the last third of the epochs: the sum of weight · distance. The cube root alone finds better
-  /// valleys than with L2 beside it.
+  /// What is lowered up to the last third of the epochs: the sum of weight times distance. The cube root alone finds
+  /// better valleys than with L2 beside it.
   std::vector<WeightedDistance> start_objective = {{LobeDistance::CubeRoot, 1.0}};
   /// What is lowered in the last third, and what finalists are chosen by. A little L2 puts the peak right, at no cost
   /// to the cube root.
   std::vector<WeightedDistance> objective = {{LobeDistance::CubeRoot, 1.0}, {LobeDistance::L2, 0.25}};
-  /// After half of the epochs what a trace shows beyond the model (shadows, further bounces, real grounds) is added to
-  /// the model's maps, and kept; so often.
-  int traced_corrections = 1;
+  /// So often in the second half of the epochs what a trace shows beyond the model (shadows, further bounces, real
+  /// grounds) is added to the model's maps, and kept. At normal incidence it did not help: see docs/physics.md.
+  int traced_corrections = 0;
   std::size_t fresh_draws = 4;  ///< printed, for the choice and again for the verdict; 4 … 64
   std::uint64_t traced_samples = 1U << 20;
   std::string algorithm = "LD_MMA";
@@ -60,14 +60,15 @@ struct FreeForm {
 
 /// Every pixel of a periodic tile a variable: the gray image whose print comes closest to a goal.
 ///
-/// Method   wanted heights, gray = γ + e^((h − α)/β), from 2β below the threshold (where nothing cures, but light is
-///          taken from the foot of a cliff beside it, which makes it steeper) up to the top of the layer → light →
-///          slopes of the cured relief → soft bins three times as fine as the goal's → the ground as scatter, its mean
-///          over all draws (draws of it would be learned by heart) → the goal's bins; and back by the adjoint. From
-///          each of several start shapes both on the objective at once and after the Wasserstein distance, which sees
-///          how far light has to go; then from the best two. In every epoch the relief is sampled at other places, so
-///          that nothing can hide between samples. The best is chosen by tracing quantised prints on fresh grounds, and
-///          judged by `verify_design` on others.
+/// Method   wanted heights, gray = γ + e^((h − α)/β), from 2β below the threshold (where nothing cures, but light
+///          is taken from the foot of a cliff beside it, which makes it steeper) up to the top of the layer → light
+///          → slopes of the cured relief → soft bins three times as fine as the goal's → the ground as scatter,
+///          its mean over all draws (draws of it would be learned by heart) → the goal's bins; and back by the
+///          adjoint. From each of several start shapes both on the start objective at once and after the Wasserstein
+///          distance, which sees how far light has to go; then from the best four, then two. In every epoch the relief
+///          is sampled at other places, so that little can hide between samples. The best is chosen by tracing
+///          quantised prints on fresh grounds, and judged by `verify_design` on others.
+/// Cost     128 pixels a side: 19 to 25 s of CPU time, most of it in parallel.
 /// Ctrl-C   with a `state`, what is finished and the best so far are in it (`free_form_so_far`) before the exception of
 ///          `progress` goes on its way.
 /// @throws InvalidInput for options out of range, a goal without directions, dark or not finite, or with more light

@@ -15,8 +15,8 @@ struct Places {
   double x = 0.5, y = 0.5;     ///< within a sub-pixel
 };
 
-/// Wanted heights in µm, one a pixel, and the gray values that ask for them: gray = γ + e^((h − α)/β) also below the
-/// threshold, where h is negative and nothing cures.
+/// Wanted heights in µm, one a pixel, and the gray values that ask for them: gray = γ + e^((h − α)/β) also below
+/// the threshold, where h is negative and nothing cures.
 struct WantedHeights {
   double low_um = 0.0, high_um = 0.0;
 };

@@ -38,7 +38,7 @@ struct Verification {
 ///
 /// Method   `print_draw` (printer's levels, fine sub-samples at new places, fresh ground) → PathTracer in hard bins
 ///          of the goal's grid, for all its directions of the light → soft bins, so that it meets the goal's maps on
-///          equal terms → mean over the draws → every LobeDistance with its standard error and its Monte-Carlo floor.
+///          equal terms → mean over the draws → every LobeDistance with its standard error and Monte-Carlo floor.
 /// Cost     0.15 s of CPU time for a draw of 128² pixels (768² samples) and 2^20 paths at normal incidence.
 /// Bits     the same with any number of threads.
 /// @throws InvalidInput for fewer than 4 seeds, repeated ones, a goal without directions, or what PathTracer refuses.
