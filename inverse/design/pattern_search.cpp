@@ -104,7 +104,10 @@ private:
   Evaluation made(const Level& level, const MeasureSum& sum, const std::vector<double>& values) {
     try {
       const SlopeModel::Shown shown = level.model.shown(with_values(pattern_, variables_, values));
-      return {goal_.distance(sum, shown), goal_.covariance(shown)};
+      const Evaluation evaluation{goal_.distance(sum, shown), goal_.covariance(shown)};
+      if (std::isfinite(evaluation.objective)) return evaluation;
+      ++failures_;
+      failure_ = "the objective is not a finite number";
     } catch (const InvalidInput& error) {
       ++failures_;
       failure_ = error.what();
