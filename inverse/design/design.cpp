@@ -82,10 +82,9 @@ void warn_of_lobes(const DesignProblem& problem, Design& design) {
   if (!problem.lobes) return;
   if (problem.target.kind == "ggx") {
     design.warnings.push_back(fmt::format(
-        "slopes of a GGX lobe have no RMS: those that are compared, {:.3g} and {:.3g}, are what a map of {} bins a "
-        "side "
-        "shows of it, and differ with other bins; judge by the lobe's distances",
-        problem.target.slopes.rms_major, problem.target.slopes.rms_minor, problem.lobes->grid.grid().width));
+        "slopes of a GGX lobe have no RMS: those that are compared, {:.3g} and {:.3g}, are what its light above the "
+        "horizon shows, more than α/√2 and other ones for other directions of the light; judge by the lobe's distances",
+        problem.target.slopes.rms_major, problem.target.slopes.rms_minor));
   }
   if (!problem.by_light) return;
   std::ranges::move(brightness_notes(*problem.lobes), std::back_inserter(design.warnings));
@@ -152,6 +151,10 @@ double held_out_ratio(const DesignGoal& goal, const MeasureSum& lowered, const s
       const SlopeAxesEstimate& e = design.on_fresh_draws;
       noise += term.weight * 4.0 *
                (std::pow(e.rms_major_error / e.axes.rms_major, 2) + std::pow(e.rms_minor_error / e.axes.rms_minor, 2));
+      // A turned covariance is off the diagonal of the other's frame by that.
+      const double ratio = e.axes.rms_major / e.axes.rms_minor,
+                   turn = goal.target().rotation_matters ? e.rotation_error.radians() : 0.0;
+      noise += term.weight * 2.0 * std::pow(turn * (ratio - 1.0 / ratio), 2);
     }
   }
   return std::sqrt((held_out + noise) / (trained + 2.0 * noise));

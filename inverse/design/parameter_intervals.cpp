@@ -141,7 +141,7 @@ ParameterIntervals parameter_intervals(const DesignGoal& goal, const MeasureSum&
   const auto n = static_cast<double>(model.draw_count());
   const Eigen::MatrixXd j = jacobian(goal, lowered, model, pattern, variables, values);
   const Eigen::MatrixXd scatter = pseudo_values(goal, lowered, model.draws(with_values(pattern, variables, values)));
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(j, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(j, Eigen::ComputeThinU | Eigen::ComputeFullV);
   const double t = student_95(static_cast<std::uint32_t>(model.draw_count() - 1));
   // The mean of n draws, and a target that is itself the mean of some.
   const double per_draw = 1.0 / n + 1.0 / target_draws;
@@ -155,7 +155,7 @@ ParameterIntervals parameter_intervals(const DesignGoal& goal, const MeasureSum&
     combination.change.resize(variables.size());
     const bool has_value = k < svd.singularValues().size() && svd.singularValues()(k) > 0.0;
     const Eigen::VectorXd direction =
-        k < svd.matrixV().cols() ? Eigen::VectorXd(svd.matrixV().col(k)) : Eigen::VectorXd::Zero(count);
+        svd.matrixV().col(k);  // all of them: fewer figures than variables leave some free
     for (Eigen::Index i = 0; i < count; ++i) combination.change[static_cast<std::size_t>(i)] = direction(i);
     if (has_value) {
       const Eigen::RowVectorXd scores = svd.matrixU().col(k).transpose() * scatter / svd.singularValues()(k);
