@@ -106,7 +106,7 @@ TEST(Design, WhereAModelFailsInAPartOfTheBoxGoesOnWithoutIt) {
   EXPECT_TRUE(std::isfinite(design.search.objective));
   const std::string told = warned(design, "evaluations failed");
   EXPECT_FALSE(told.empty());
-  test::record({theme, "`mezzotint design`", "lines whose finest scales ask for more noise than memory is allowed",
+  test::record({theme, "`mezzotint design`", "lines of a box whose finest scales ask for more than 2^17 cells of noise",
                 fmt::format("{} of {} evaluations fail. The others go on, and the best of them is judged.", failed,
                             steps.size()),
                 "An error in the model, or an objective that is no number, counts as worse than everything.", told});
