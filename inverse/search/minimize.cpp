@@ -127,7 +127,7 @@ private:
     step.objective = slopes != nullptr ? steep_(step.values, *slopes) : objective_(step.values);
     for (std::size_t i = 0; slopes != nullptr && i < unit.size(); ++i)
       (*slopes)[i] *= stretch(variables_[i], step.values[i]);
-    if (slopes != nullptr && !std::ranges::all_of(*slopes, [](double slope) { return std::isfinite(slope); })) {
+    if (slopes != nullptr && !all_finite(step.objective, *slopes)) {
       step.objective = std::numeric_limits<double>::quiet_NaN();
       std::ranges::fill(*slopes, 0.0);
     }
@@ -135,6 +135,10 @@ private:
     count(step);
     if (observer_) observer_(result_.evaluations, step);
     return std::isfinite(step.objective) ? std::min(step.objective, penalty) : penalty;
+  }
+
+  static bool all_finite(double objective, const std::vector<double>& slopes) {
+    return std::isfinite(objective) && std::ranges::all_of(slopes, [](double slope) { return std::isfinite(slope); });
   }
 
   void count(const SearchStep& step) {
