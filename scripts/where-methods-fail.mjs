@@ -22,7 +22,7 @@ const themes = {
   "Models": "The ladder: `moments`, `slopes`, `paths`, and `auto`, which chooses.",
   "Waves": "Rays know no wavelength.",
   "BSDF tables": "One light after the other, put together for all.",
-  "Inverse design": "Targets that nothing reaches, and searches that end early.",
+  "Inverse design": "Targets that nothing reaches, searches that end early or in the wrong place, and what stays of them. Patches have 48² to 96² pixels; α = √2 · RMS slope.",
   "Measurement": "Scans, and what is done to them before a figure comes out. Textures are Gaussian, samples 1 µm apart, unless said; Sal is the correlation length.",
 };
 
@@ -49,9 +49,9 @@ const section = ([name, introduction]) => {
 const figureLink = path.posix.join(path.basename(path.dirname(figureFile)), path.basename(figureFile));
 const page = `# Where methods fail
 
-Every method of the forward model and of measurement is taken to the place where it breaks: what happens there, how the program notices, and what it tells. [\`tests/stability\`](../tests/stability) does it and asserts what must hold in spite of it (light is conserved, a warning is there, a refusal is clear); CI runs it. \`scripts/where-methods-fail.sh\` measures anew and writes this page.
+Every method of the forward model, of measurement and of inverse design is taken to the place where it breaks: what happens there, how the program notices, and what it tells. [\`tests/stability\`](../tests/stability) does it and asserts what must hold in spite of it (light is conserved, a warning is there, a refusal is clear); CI runs it. \`scripts/where-methods-fail.sh\` measures anew and writes this page.
 
-Sentences in quotes are the program's. \`mezzotint bsdf\` says them on stderr, with \`--json\` as the array \`warnings\`; in a BSDF's file they stand in the provenance, one a line. \`mezzotint correct\` warns the same way, \`mezzotint roughness\` prints notes (\`notes\`). Reliefs are random waves with nearly Gaussian slopes on 64² to 256² cells, unless said; s is the RMS gradient. "It holds" means that the limit was looked for and not found.
+Sentences in quotes are the program's. \`mezzotint bsdf\` says them on stderr, with \`--json\` as the array \`warnings\`; in a BSDF's file they stand in the provenance, one a line. \`mezzotint correct\` warns the same way, \`mezzotint roughness\` prints notes (\`notes\`); what is said of a design stands in its files and on its page. Reliefs are random waves with nearly Gaussian slopes on 64² to 256² cells, unless said; s is the RMS gradient. "It holds" means that the limit was looked for and not found.
 
 ![Albedo by the slides' weight, light of slopes without shadows, and light on the rim of the map, against the angle of the light](${figureLink})
 

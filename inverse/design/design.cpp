@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -16,6 +17,9 @@ namespace {
 constexpr std::uint64_t seed_stride = 1000;
 constexpr std::uint64_t fresh_offset = 500;
 constexpr double most_held_out_ratio = 1.3;
+constexpr int few_levels = 14;
+// Noise may make a measured lobe a little brighter than a mirror.
+constexpr double brightness_slack = 0.05;
 
 std::vector<std::uint64_t> consecutive_seeds(std::uint64_t first, std::size_t count) {
   std::vector<std::uint64_t> seeds(count);
@@ -60,6 +64,32 @@ void warn_of_pixels(const DesignProblem& problem, Design& design) {
   }
 }
 
+// Rounding to few levels makes steps of what should be slopes.
+void warn_of_levels(const DesignProblem& problem, Design& design) {
+  const HeightField heights =
+      pixel_heights(draw_instance(design.pattern, design.print_seed), problem.printer, problem.patch.pixels);
+  std::vector<float> levels = quantize(expose(heights, problem.printer).image, problem.printer).values;
+  std::ranges::sort(levels);
+  const auto used = std::ranges::unique(levels).begin() - levels.begin();
+  if (used >= few_levels) return;
+  design.warnings.push_back(fmt::format(
+      "the relief uses {} of the printer's {} gray levels; below {} their rounding shifts its slopes by some per cent: "
+      "use a larger height and longer wavelengths",
+      used, problem.printer.gray_levels, few_levels));
+}
+
+void warn_of_lobes(const DesignProblem& problem, Design& design) {
+  if (!problem.lobes) return;
+  if (problem.target.kind == "ggx") {
+    design.warnings.push_back(fmt::format(
+        "slopes of a GGX lobe have no RMS: those that are compared, {:.3g} and {:.3g}, are what its light above the "
+        "horizon shows, more than α/√2 and other ones for other directions of the light; judge by the lobe's distances",
+        problem.target.slopes.rms_major, problem.target.slopes.rms_minor));
+  }
+  if (!problem.by_light) return;
+  std::ranges::move(brightness_notes(*problem.lobes), std::back_inserter(design.warnings));
+}
+
 void warn_of_bounds(Design& design) {
   for (std::size_t i = 0; i < design.variables.size(); ++i) {
     const Variable& variable = design.variables[i];
@@ -93,10 +123,12 @@ std::uint64_t closest_draw(const DesignProblem& problem, const Design& design) {
   return design.fresh_seeds[best];
 }
 
-// Draws that no search has met: other places of the samples, the printer's levels, a ground of their own.
+// Draws that no search has met: finer samples at other places, the printer's levels, a ground of their own.
 SlopeModel fresh_model(const DesignProblem& problem, const std::vector<std::uint64_t>& seeds) {
+  PatchOptions patch = problem.patch;
+  patch.subsamples = std::min<std::size_t>(16, 2 * patch.subsamples);
   return {problem.printer,
-          problem.patch,
+          patch,
           seeds,
           problem.lobes,
           {.levels = GrayLevels::Quantized, .drawn_ground = true, .place_x = 0.23, .place_y = 0.71}};
@@ -121,6 +153,10 @@ double held_out_ratio(const DesignGoal& goal, const MeasureSum& lowered, const s
       const SlopeAxesEstimate& e = design.on_fresh_draws;
       noise += term.weight * 4.0 *
                (std::pow(e.rms_major_error / e.axes.rms_major, 2) + std::pow(e.rms_minor_error / e.axes.rms_minor, 2));
+      // A turned covariance is off the diagonal of the other's frame by that.
+      const double ratio = e.axes.rms_major / e.axes.rms_minor,
+                   turn = goal.target().rotation_matters ? e.rotation_error.radians() : 0.0;
+      noise += term.weight * 2.0 * std::pow(turn * (ratio - 1.0 / ratio), 2);
     }
   }
   return std::sqrt((held_out + noise) / (trained + 2.0 * noise));
@@ -182,6 +218,7 @@ std::vector<Variable> search_variables(const DesignProblem& problem) {
 
 Design find_design(const DesignProblem& problem, const Progress& progress) {
   const DesignGoal goal(problem.target, problem.lobes, problem.by_light);
+  if (problem.lobes) require_possible(*problem.lobes, brightness_slack);
   Design design;
   design.variables = search_variables(problem);
   const SearchPlan plan = plan_of(problem);
@@ -215,6 +252,8 @@ Design find_design(const DesignProblem& problem, const Progress& progress) {
   design.met = problem.by_light ? design.fresh_lobe_error && design.fresh_lobe_error->value <= problem.target.tolerance
                                 : is_met(design.fresh_error, problem.target);
   warn_of_pixels(problem, design);
+  warn_of_levels(problem, design);
+  warn_of_lobes(problem, design);
   warn_of_bounds(design);
   warn_of_overfit(design);
   return design;

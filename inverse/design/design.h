@@ -61,15 +61,16 @@ struct Design {
   ParameterIntervals intervals;
   std::optional<Estimate> fresh_lobe_error;  ///< √ of the cube root's on the fresh draws, of a lobe target
   bool met = false;
-  /// In words: saturated pixels, wavelengths under 4 pixels, a bound that was hit, an overfit to the search's draws.
+  /// In words: saturated pixels, wavelengths under 4 pixels, few gray levels, a bound that was hit, an overfit to the
+  /// search's draws, light that no relief of the material sends back, slopes that a GGX lobe does not have.
   std::vector<std::string> warnings;
 };
 
 /// The parameters of the pattern whose print comes closest to the target: search_pattern, then judged on draws that it
 /// has not seen, with the printer's gray levels and real draws of its ground.
-/// @throws InvalidInput for an impossible problem (unknown or whole parameter, bounds outside of its range); FileError
-/// for
-///         a log that belongs to another; what `progress` throws. With a log it can go on then.
+/// @throws InvalidInput for an impossible problem (unknown or whole parameter, bounds outside of its range, lobes that
+///         are dark, not finite or brighter than a mirror); FileError for a log that belongs to another; what
+///         `progress` throws. With a log it can go on then.
 [[nodiscard]] Design find_design(const DesignProblem& problem, const Progress& progress = {});
 
 /// The problem's variables with their starts.

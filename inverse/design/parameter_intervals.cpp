@@ -193,7 +193,8 @@ ParameterIntervals parameter_intervals(const DesignGoal& goal, const MeasureSum&
   require(model.draw_count() >= 3 && fresh.size() >= 3, "intervals come from the scatter of at least three draws");
   const Eigen::MatrixXd j = jacobian(goal, lowered, model, pattern, variables, values);
   const Scatter scatter(goal, lowered, model.draws(with_values(pattern, variables, values)), fresh, target_draws);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(j, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  // All directions: fewer figures than variables leave some free.
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(j, Eigen::ComputeThinU | Eigen::ComputeFullV);
   const auto count = static_cast<Eigen::Index>(variables.size());
   const Eigen::VectorXd& singular = svd.singularValues();
 
@@ -202,9 +203,7 @@ ParameterIntervals parameter_intervals(const DesignGoal& goal, const MeasureSum&
   for (Eigen::Index k = 0; k < count; ++k) {
     ParameterCombination combination{.change = std::vector<double>(variables.size(), 0.0),
                                      .half_width_95 = std::numeric_limits<double>::infinity()};
-    if (k < singular.size()) {
-      for (Eigen::Index i = 0; i < count; ++i) combination.change[static_cast<std::size_t>(i)] = svd.matrixV()(i, k);
-    }
+    for (Eigen::Index i = 0; i < count; ++i) combination.change[static_cast<std::size_t>(i)] = svd.matrixV()(i, k);
     if (k < singular.size() && singular(k) > 0.0) {
       const Eigen::VectorXd direction = svd.matrixU().col(k) / singular(k);
       combination.half_width_95 = scatter.half_width_95(direction);

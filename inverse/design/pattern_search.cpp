@@ -167,7 +167,9 @@ private:
   template <typename Make, typename Result>
   Result guarded(const Make& make, Result failed) {
     try {
-      return make();
+      const Result result = make();
+      if (is_finite(result)) return result;
+      failure_ = "the objective is not a finite number";
     } catch (const InvalidInput& error) {
       failure_ = error.what();
     } catch (const MethodError& error) {
@@ -176,6 +178,9 @@ private:
     ++failures_;
     return failed;
   }
+
+  static bool is_finite(double objective) { return std::isfinite(objective); }
+  static bool is_finite(const Evaluation& evaluation) { return std::isfinite(evaluation.objective); }
 
   [[nodiscard]] std::string in_words(const std::string& stage) const {
     return fmt::format("{}: {:.0f} evaluations, distance {:.2e}", stage, spent_, last_);
@@ -335,6 +340,13 @@ private:
 
   // Position and width alone, from the place whose shape came nearest.
   Place by_position(const Place& from) {
+    if (affordable(fine_) < 1) {
+      outcome_.warnings.emplace_back(
+          "the lobe's shape was not met when the budget ended, and position and widths alone could not be searched: "
+          "this is the best so far; allow more evaluations");
+      converged_ = false;
+      return from;
+    }
     outcome_.warnings.push_back(
         "the pattern cannot have the lobe's shape: its position and widths alone were searched to the end, since a "
         "search for the shape would spoil them");
@@ -349,6 +361,7 @@ private:
 
   SearchOutcome without_a_search(const Place& start) {
     words_ = "no evaluation was allowed: this is the start, by closed forms, as it is";
+    converged_ = false;
     outcome_.warnings.push_back(words_);
     outcome_.values = moments_.exists() ? moments_.solve(goal_.target(), start.values) : start.values;
     return end(std::numeric_limits<double>::quiet_NaN());
@@ -357,8 +370,9 @@ private:
   SearchOutcome with_slopes_alone(const Place& best) {
     if (std::isfinite(best.objective)) {
       outcome_.warnings.emplace_back(
-          "the budget ended before the objective could be searched; this is where the slopes alone led: allow more "
-          "evaluations");
+          failures_ > 0 ? "the objective gave no finite number anywhere; this is where the slopes alone led"
+                        : "the budget ended before the objective could be searched; this is where the slopes alone "
+                          "led: allow more evaluations");
       lowered_ = slopes_alone;
       converged_ = false;
     }
@@ -392,22 +406,24 @@ private:
     return std::move(outcome_);
   }
 
-  // Every place alike within a stage: nothing that may change matters.
+  // Every place alike: nothing that may change matters. A scan sees the whole box, and a search what is around it.
   void warn_of_flatness() {
+    if (!is_flat("scan", 1e-3) && !is_flat(outcome_.history.empty() ? "" : outcome_.history.back().stage, 1e-9)) return;
+    outcome_.warnings.emplace_back(
+        "the objective is the same wherever the search looked: what it may change does not show, or is lost under "
+        "the printer's ground; free another parameter or widen the bounds");
+  }
+
+  [[nodiscard]] bool is_flat(const std::string& stage, double share) const {
     double low = infinity, high = -infinity;
     std::size_t count = 0;
     for (const DesignStep& step : outcome_.history) {
-      if (step.stage != outcome_.history.back().stage || !std::isfinite(step.step.objective)) continue;
+      if (step.stage != stage || !std::isfinite(step.step.objective)) continue;
       low = std::min(low, step.step.objective);
       high = std::max(high, step.step.objective);
       ++count;
     }
-    if (count >= 2 * variables_.size() + 1 && high - low <= 1e-9 * std::abs(high)) {
-      outcome_.warnings.emplace_back(
-          "the objective is the same wherever the search looked: what it may change does not show, or is lost under "
-          "the "
-          "printer's ground; free another parameter or widen the bounds");
-    }
+    return count >= 2 * variables_.size() + 1 && high - low <= share * std::abs(high);
   }
 
   const DesignGoal& goal_;
@@ -432,6 +448,8 @@ SearchOutcome search_pattern(const DesignGoal& goal, const Pattern& pattern, con
                              const PrinterProfile& printer, const PatchOptions& patch, const SearchPlan& plan,
                              EvaluationLog* log, const Progress& progress) {
   require(!variables.empty(), "a search needs at least one free parameter");
+  for (const WeightedMeasure& term : plan.objective)
+    require(std::isfinite(term.weight) && term.weight > 0.0, "weights of an objective must be finite and positive");
   return PatternSearch(goal, pattern, variables, printer, patch, plan, log, progress).run();
 }
 

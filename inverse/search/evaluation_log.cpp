@@ -64,7 +64,9 @@ EvaluationLog::EvaluationLog(std::filesystem::path file, const std::string& dige
   if (!is_new) read(header);
   stream_.open(file_, std::ios::binary | std::ios::app);
   if (is_new) stream_ << header << std::flush;
-  if (!stream_) throw DeviceError(file_.string() + ": the search's log cannot be written");
+  if (!stream_)
+    throw DeviceError(file_.string() +
+                      ": the search's log cannot be written; is the disk full, or the folder not there?");
 }
 
 void EvaluationLog::read(const std::string& header) {

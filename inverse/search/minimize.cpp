@@ -74,6 +74,11 @@ public:
     if (failure_) std::rethrow_exception(failure_);
   }
   [[nodiscard]] bool ran_out() const { return result_.evaluations >= max_evaluations_; }
+  // Asked at more places than a model of first order has numbers, and the same at all of them.
+  [[nodiscard]] bool was_flat() const {
+    const auto asked = static_cast<std::size_t>(result_.evaluations - result_.not_finite);
+    return asked > variables_.size() + 1 && highest_ == result_.best.objective;
+  }
   [[nodiscard]] MinimizeResult take() { return std::move(result_); }
 
 private:
@@ -122,10 +127,27 @@ private:
     step.objective = slopes != nullptr ? steep_(step.values, *slopes) : objective_(step.values);
     for (std::size_t i = 0; slopes != nullptr && i < unit.size(); ++i)
       (*slopes)[i] *= stretch(variables_[i], step.values[i]);
+    if (slopes != nullptr && !all_finite(step.objective, *slopes)) {
+      step.objective = std::numeric_limits<double>::quiet_NaN();
+      std::ranges::fill(*slopes, 0.0);
+    }
     ++result_.evaluations;
-    if (std::isfinite(step.objective) && step.objective < result_.best.objective) result_.best = step;
+    count(step);
     if (observer_) observer_(result_.evaluations, step);
     return std::isfinite(step.objective) ? std::min(step.objective, penalty) : penalty;
+  }
+
+  static bool all_finite(double objective, const std::vector<double>& slopes) {
+    return std::isfinite(objective) && std::ranges::all_of(slopes, [](double slope) { return std::isfinite(slope); });
+  }
+
+  void count(const SearchStep& step) {
+    if (!std::isfinite(step.objective)) {
+      ++result_.not_finite;
+      return;
+    }
+    highest_ = std::max(highest_, step.objective);
+    if (step.objective < result_.best.objective) result_.best = step;
   }
 
   const std::vector<Variable>& variables_;
@@ -136,6 +158,7 @@ private:
   nlopt_opt optimizer_ = nullptr;
   std::exception_ptr failure_;
   MinimizeResult result_;
+  double highest_ = -std::numeric_limits<double>::infinity();  // of the finite objectives
 };
 
 Optimizer make_optimizer(const std::string& name, unsigned count, const MinimizeOptions& options) {
@@ -147,6 +170,8 @@ Optimizer make_optimizer(const std::string& name, unsigned count, const Minimize
   nlopt_set_xtol_abs1(optimizer.get(), options.relative_tolerance);
   nlopt_set_initial_step1(optimizer.get(), options.initial_step);
   nlopt_set_stopval(optimizer.get(), options.good_enough);
+  // The border counts by itself; StoGO knows no forced stop, only this.
+  nlopt_set_maxeval(optimizer.get(), options.max_evaluations);
   return optimizer;
 }
 
@@ -184,6 +209,22 @@ void require_valid_search(const std::vector<Variable>& variables, const Minimize
               "LN_NELDERMEAD, GN_DIRECT_L, GN_CRS2_LM, G_MLSL_LDS, LD_LBFGS, LD_SLSQP");
 }
 
+// Some algorithms give up before they ask once: for one variable, for many, or without their own library.
+void require_result(const MinimizeResult& result, const std::string& algorithm, std::size_t variables,
+                    nlopt_opt optimizer) {
+  if (result.evaluations == 0) {
+    const char* reason = nlopt_get_errmsg(optimizer);
+    throw MethodError(algorithm + " ended before its first evaluation" +
+                      (reason != nullptr ? " (NLopt: " + std::string(reason) + ")" : "") + "; it does not suit " +
+                      std::to_string(variables) + (variables == 1 ? " variable" : " variables") +
+                      " between bounds, or is not in this NLopt; LN_BOBYQA and LN_SBPLX suit any number");
+  }
+  if (!std::isfinite(result.best.objective)) {
+    throw MethodError(algorithm + " made " + std::to_string(result.evaluations) +
+                      " evaluations and none gave a finite objective; start elsewhere, or narrow the bounds");
+  }
+}
+
 MinimizeResult run(const std::vector<Variable>& variables, Border& border, const MinimizeOptions& options) {
   const auto count = static_cast<unsigned>(variables.size());
   const Optimizer optimizer = make_optimizer(options.algorithm, count, options);
@@ -200,14 +241,12 @@ MinimizeResult run(const std::vector<Variable>& variables, Border& border, const
   double last = 0.0;
   const nlopt_result outcome = nlopt_optimize(optimizer.get(), unit.data(), &last);
   border.rethrow();
-  const bool ran_out = border.ran_out();
+  const bool ran_out = border.ran_out(), flat = border.was_flat();
   MinimizeResult result = border.take();
-  if (!std::isfinite(result.best.objective)) {
-    throw MethodError(options.algorithm + " made " + std::to_string(result.evaluations) +
-                      " evaluations and none gave a finite objective");
-  }
-  result.outcome = in_words(outcome, ran_out);
-  result.converged = !ran_out && outcome > 0;
+  require_result(result, options.algorithm, variables.size(), optimizer.get());
+  result.outcome = flat ? "the objective is the same wherever it was asked: nothing that is free shows in it"
+                        : in_words(outcome, ran_out);
+  result.converged = !ran_out && !flat && outcome > 0;
   return result;
 }
 

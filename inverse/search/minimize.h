@@ -38,8 +38,9 @@ struct SearchStep {
 struct MinimizeResult {
   SearchStep best;  ///< the lowest finite objective that was seen, whatever the algorithm returns
   int evaluations = 0;
-  std::string outcome;  ///< why it ended, in words
-  bool converged = false;
+  int not_finite = 0;      ///< of them, whose objective, or a slope of it, was not finite
+  std::string outcome;     ///< why it ended, in words; where every place gave the same, that
+  bool converged = false;  ///< not by the budget, nor on a flat objective
 };
 
 /// Called with the variables' values; may throw, which ends the search and reaches the caller unchanged.
@@ -59,7 +60,9 @@ using SearchObserver = std::function<void(int evaluation, const SearchStep&)>;
 /// global to the thread: so the best point is kept here, exceptions are caught at the border and rethrown,
 /// the seed is set in this thread, and an objective that is not finite counts as worse than everything.
 /// @throws InvalidInput for an unknown algorithm (naming close ones), no variables, or bounds without room.
-/// @throws MethodError where not one evaluation gave a finite objective.
+/// @throws MethodError where not one evaluation gave a finite objective, or none was made at all: some algorithms
+/// refuse
+///         one variable, or many, before they ask.
 [[nodiscard]] MinimizeResult minimize(const std::vector<Variable>& variables, const Objective& objective,
                                       const MinimizeOptions& options, const SearchObserver& observer = {});
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "forward/optics/direction_map.h"
@@ -23,5 +24,13 @@ struct LobeTarget {
 [[nodiscard]] LobeTarget lobe_target(const DirectionGrid& grid, const Material& material,
                                      const std::vector<DirectionAngles>& incidences,
                                      const std::vector<DirectionMap>& maps, bool any_brightness);
+
+/// @param slack  light beyond all that comes in which noise may explain
+/// @throws InvalidInput for a goal without directions, of another grid, not finite, negative, dark, or brighter than a
+///         mirror.
+void require_possible(const LobeTarget& goal, double slack = 1e-6);
+
+/// Of each direction whose light is more than 5 % from what a flat surface of the material reflects: a sentence.
+[[nodiscard]] std::vector<std::string> brightness_notes(const LobeTarget& goal);
 
 }  // namespace mezzotint

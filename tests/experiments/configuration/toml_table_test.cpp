@@ -82,7 +82,7 @@ TEST_F(TomlTableTest, SaysWhatIsMissing) {
             "run.toml:1:1: \"alpha_x\" is missing in [target]");
 }
 
-TEST_F(TomlTableTest, ReadsFixedAndFreeNumbers) {
+TEST_F(TomlTableTest, ReadsFixedAndGamutParameters) {
   const TomlFile file = parse("a = 5.0\nb = { free = [1.0, 4.0], start = 2.0 }\nc = { free = [4.0, 1.0] }\n");
   TomlTable root(file);
   EXPECT_EQ(root.number_or_free("a", {0.0, 10.0}).fixed, 5.0);
