@@ -113,6 +113,20 @@ const StudyStyle& style_of(const std::string& method) {
                                                         {"random samples", {"#0072b2", "circle"}},
                                                         {"every n-th sample", {"#d55e00", "diamond"}},
                                                         {"all samples", {"#000000", "square"}},
+                                                        {"ladder by levels", {"#d55e00", "circle"}},
+                                                        {"SBPLX", {"#0072b2", "triangle"}},
+                                                        {"COBYLA", {"#56b4e9", "triangle"}},
+                                                        {"L-BFGS", {"#009e73", "triangle"}},
+                                                        {"cube root", {"#d55e00", "diamond"}},
+                                                        {"L2", {"#e69f00", "diamond"}},
+                                                        {"log", {"#56b4e9", "diamond"}},
+                                                        {"Wasserstein", {"#009e73", "diamond"}},
+                                                        {"lobe's moments", {"#cc79a7", "diamond"}},
+                                                        {"plain, cube root", {"#000000", "square"}},
+                                                        {"plain, L2", {"#7f7f7f", "square"}},
+                                                        {"plain from our start, cube root", {"#000000", "circle"}},
+                                                        {"plain from our start, L2", {"#7f7f7f", "circle"}},
+                                                        {"plain, our tracer", {"#0072b2", "square"}},
                                                         {auto_method, {"#000000", "star"}}};
   return all.at(method);
 }

@@ -34,8 +34,10 @@ public:
   }
 
   void run() {
+    const int corrections = outcome_.shape_fits ? traced_.corrections : 0;
+    if (corrections == 0 && traced_.evaluations == 0) return;
     outcome_.objective = asked("traced", outcome_.values);
-    for (int step = 0; step < traced_.corrections; ++step) {
+    for (int step = 0; step < corrections; ++step) {
       const std::vector<double> corrected = correct();
       const double objective = asked("traced", corrected);
       if (!(objective < outcome_.objective)) break;
@@ -84,8 +86,9 @@ private:
   std::vector<double> correct() {
     LobeTarget lobes = *goal_.lobes();
     const std::vector<DirectionMap> traced = traced_maps(outcome_.values);
+    // Of the same draws: their own scatter is in both, and so not in the difference.
     const std::vector<DirectionMap> by_slopes =
-        SlopeModel(printer_, patch_, plan_.seeds, lobes).shown(with_values(pattern_, variables_, outcome_.values)).maps;
+        SlopeModel(printer_, patch_, seeds_, lobes).shown(with_values(pattern_, variables_, outcome_.values)).maps;
     for (std::size_t light = 0; light < lobes.maps.size(); ++light) {
       for (std::size_t k = 0; k < lobes.maps[light].size(); ++k)
         lobes.maps[light][k] = std::max(0.0, lobes.maps[light][k] + by_slopes[light][k] - traced[light][k]);
@@ -138,7 +141,6 @@ void polish_traced(const DesignGoal& goal, const Pattern& pattern, const std::ve
                    const TracedPlan& traced, EvaluationLog* log, SearchOutcome& outcome, const Progress& progress) {
   require(goal.by_light(), "tracing puts light right; a goal of slopes has none");
   require(traced.corrections >= 0 && traced.corrections <= 4, "a search takes 0 to 4 traced corrections");
-  if (traced.corrections == 0 && traced.evaluations == 0) return;
   TracedPolish(goal, pattern, variables, printer, patch, plan, traced, log, outcome, progress).run();
 }
 

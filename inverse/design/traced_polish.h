@@ -9,9 +9,15 @@
 namespace mezzotint {
 
 /// What tracing is spent on after a search by slopes.
+///
+/// Measured (design_race: targets traced, held-out error traced, light at 20°; three targets a family): a correction
+/// takes a sinusoid's cube-root error from .007, .013, .010 to .006, .010, .007 for two thirds more time. Ridges with a
+/// sinusoid go from .029 and .024 to .030 and .026, their largest error of a variance from 1.25 and .70 % to 1.03 and
+/// .62 %, for half more time; noise stays where it is. A polish of 8 evaluations more changed the cube-root error by
+/// −5 to +15 %, one of 40 by −4 to +9 %, for up to as much time again: there is none by default.
 struct TracedPlan {
   int corrections = 1;    ///< of the goal by what tracing shows, each followed by a search by slopes; 0 … 4
-  int evaluations = 8;    ///< of a last search on traced light itself; 0: none
+  int evaluations = 0;    ///< of a last search on traced light itself; 0: none
   std::size_t draws = 4;  ///< of the search's own, the same ones at every step
   std::uint64_t samples = 1U << 16;  ///< paths a draw and direction of the light
 };
@@ -20,7 +26,8 @@ struct TracedPlan {
 /// put right by tracing.
 ///
 /// Correction  the goal's maps plus what slopes show more than tracing does at the place found: a search by slopes for
-///             that ends where tracing shows the goal. Kept where it is better as traced.
+///             that ends where tracing shows the goal. Kept where it is better as traced. None where the shape is out
+///             of the pattern's reach: what is searched for then is the slopes alone, and the shape would get worse.
 /// Polish      a short search on traced light, with common random numbers in pattern, ground and paths.
 /// @param outcome  of search_pattern on a goal by its light; its values, objective (as traced), history and cost are
 ///                 changed. A traced evaluation costs as many of the slope model's as its time says (`traced_cost`).

@@ -15,17 +15,26 @@
 
 #include "forward/base/random.h"
 #include "forward/pattern/pattern_parameters.h"
-#include "pattern_families.h"
+#include "inverse/design/design.h"
+#include "measure.h"
+#include "recovery_families.h"
 
 namespace {
 
 using namespace mezzotint;
+using namespace mezzotint::benchmark;
 
 constexpr DirectionGrid bins{48, 48};
 const std::vector<DirectionAngles> lights = {{20.0_deg, 0.0_deg}, {20.0_deg, 90.0_deg}};
 const Material material = Dielectric{1.5};
 const SlopeModelOptions as_printed{
     .levels = GrayLevels::Quantized, .drawn_ground = true, .place_x = 0.3, .place_y = 0.6};
+
+std::vector<Family> families(const std::string& letters) {
+  std::vector<Family> all = recovery_families();
+  std::erase_if(all, [&](const Family& family) { return letters.find(family.letter) == std::string::npos; });
+  return all;
+}
 
 std::vector<std::uint64_t> seeds_from(std::uint64_t first, std::size_t count) {
   std::vector<std::uint64_t> seeds(count);

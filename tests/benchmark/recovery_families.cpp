@@ -1,15 +1,14 @@
-#include "pattern_families.h"
+#include "recovery_families.h"
 
-#include <algorithm>
 #include <cmath>
-#include <ctime>
 
 #include <Eigen/Eigenvalues>
 
 #include "forward/base/random.h"
+#include "forward/base/units.h"
 #include "forward/pattern/pattern_parameters.h"
 
-namespace mezzotint {
+namespace mezzotint::benchmark {
 
 namespace {
 
@@ -26,7 +25,7 @@ std::vector<FreeParameter> lengths(const std::vector<FreeParameter>& free) {
 
 }  // namespace
 
-std::vector<Family> families(const std::string& letters) {
+std::vector<Family> recovery_families() {
   std::vector<Family> all;
   const double turn = 180.0;
   const std::vector<FreeParameter> s = {{"wavelength_u_um", 30.2, 300.0, {}},
@@ -51,12 +50,11 @@ std::vector<Family> families(const std::string& letters) {
       {"parts[1].wavelength_u_um", 45.0, 300.0, {}}, {"parts[1].height_um", 1.0, 4.5, {}},
       {"parts[2].scale_um", 60.0, 300.0, {}},        {"parts[2].height_um", 1.5, 6.0, {}}};
   all.push_back({'C', PatternSum{{{Ridges{}}, {Sinusoid{}}, {Noise{}}}}, c, lengths(c), 128, 8, 0.05});
-  std::erase_if(all, [&](const Family& family) { return letters.find(family.letter) == std::string::npos; });
   return all;
 }
 
-Pattern truth_of(const Family& family, std::uint64_t number) {
-  const RandomStream stream(1000 + number, RandomPurpose::StudySample);
+Pattern truth_of(const Family& family, std::uint64_t target) {
+  const RandomStream stream(1000 + target, RandomPurpose::StudySample);
   Pattern pattern = family.pattern;
   for (std::size_t i = 0; i < family.truth.size(); ++i) {
     const FreeParameter& p = family.truth[i];
@@ -75,15 +73,4 @@ double largest_error(const SlopeCovariance& found, const SlopeCovariance& truth)
   return (solver.eigenvalues().array() - 1.0).abs().maxCoeff();
 }
 
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
-
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-}  // namespace mezzotint
+}  // namespace mezzotint::benchmark
