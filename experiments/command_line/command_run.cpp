@@ -21,6 +21,13 @@ Experiment read_with_seed(const RunArguments& arguments, const CommonOptions& co
   return read_experiment(arguments.file, settings);
 }
 
+// With --json it stands in the summary.
+std::function<void(const std::string&)> teller(const CommandContext& context) {
+  return [&context](const std::string& text) {
+    if (!context.common.json && !context.common.quiet) context.print({}, text);
+  };
+}
+
 std::string in_words(const RunOutcome& outcome) {
   return outcome.verdict + "\nreport: " + (outcome.folder / "report.html").string();
 }
@@ -44,8 +51,8 @@ Command add_run(CLI::App& program) {
   return {app, [arguments](const CommandContext& context) {
             const Experiment experiment = read_with_seed(*arguments, context.common);
             const std::string folder = arguments->out.empty() ? "runs/" + experiment.name : arguments->out;
-            const RunOutcome outcome =
-                run_experiment(experiment, {.folder = folder, .resume = arguments->resume}, context.progress);
+            const RunOutcome outcome = run_experiment(
+                experiment, {.folder = folder, .resume = arguments->resume, .say = teller(context)}, context.progress);
             context.print(outcome.summary, in_words(outcome));
             return outcome.met ? ExitStatus::Done : ExitStatus::ToleranceMissed;
           }};
@@ -59,7 +66,9 @@ Command add_design(CLI::App& program) {
             const Experiment experiment = read_with_seed(*arguments, context.common);
             const std::string folder = arguments->out.empty() ? "runs/" + experiment.name : arguments->out;
             const RunOutcome outcome = run_experiment(
-                experiment, {.folder = folder, .resume = arguments->resume, .last_stage = "search"}, context.progress);
+                experiment,
+                {.folder = folder, .resume = arguments->resume, .design_only = true, .say = teller(context)},
+                context.progress);
             context.print(outcome.summary, fmt::format("{}\ndesign: {}\npattern: {}", outcome.verdict,
                                                        (outcome.folder / "design.json").string(),
                                                        (outcome.folder / "pattern.toml").string()));
