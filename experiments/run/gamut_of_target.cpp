@@ -52,7 +52,7 @@ std::string verdict_in_words(const TargetGamut& gamut) {
   const std::string others = verdict.other_kinds.empty()
                                  ? "no kind reaches it"
                                  : fmt::format("{} would", fmt::join(verdict.other_kinds, ", "));
-  return fmt::format("α {}: cannot be printed with {}: {}; {}. Nearest: α {}; the search goes there",
+  return fmt::format("α {}: cannot be printed with {}: {}; {}. The search goes to the nearest, α {}",
                      in_words(gamut.wanted), gamut.kind, verdict.why, others, in_words(verdict.nearest));
 }
 
