@@ -65,7 +65,7 @@ nlohmann::json combination_table(const Design& design) {
 std::string symmetry_in_words(const DesignResults& results) {
   const AxisSwap swap = axis_swap(*results.design);
   std::string text =
-      "Every design looks the same when it is turned by 180°, as far as slopes go: no search can tell the two. ";
+      "Turned by 180°, every design has the same slope covariance: a search by slopes cannot tell the two. ";
   if (!swap.is_free) return text + "No direction of the pattern was free, so a turn by 90° was not tried.";
   if (!swap.was_tried)
     return text + "The closed form led to the target at once: no scan was made, and a turn by 90° was not tried.";

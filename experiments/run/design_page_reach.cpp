@@ -80,7 +80,7 @@ json reach_chart(const DesignResults& results) {
                        {"encoding", {{"x", x}, {"y", y}, {"order", {{"field", "order"}}}}}};
   const json points = {
       {"data", {{"values", rows}}},
-      {"mark", {{"type", "point"}, {"size", 140}, {"strokeWidth", 2.6}, {"color", "$ink"}}},
+      {"mark", {{"type", "point"}, {"size", 140}, {"strokeWidth", 2.6}}},
       {"encoding",
        {{"x", x},
         {"y", y},
@@ -89,6 +89,12 @@ json reach_chart(const DesignResults& results) {
           {"type", "nominal"},
           {"title", nullptr},
           {"scale", {{"domain", {"target", "nearest in reach", "found"}}, {"range", {"circle", "diamond", "cross"}}}}}},
+        {"color",
+         {{"field", "name"},
+          {"type", "nominal"},
+          {"title", nullptr},
+          {"scale",
+           {{"domain", {"target", "nearest in reach", "found"}}, {"range", {"$ink", "$quiet", "$series-2"}}}}}},
         {"tooltip",
          {{{"field", "name"}},
           {{"field", "alpha_x"}, {"format", ".3g"}},

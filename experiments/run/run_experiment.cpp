@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "experiments/run/design_file.h"
+#include "experiments/run/region_designs.h"
 #include "experiments/run/run_files.h"
 #include "experiments/run/search_free_form.h"
 #include "experiments/run/stages.h"
@@ -91,6 +92,8 @@ std::string experiment_digest(const Experiment& experiment) {
 }
 
 RunOutcome run_experiment(const Experiment& experiment, const RunOptions& options, const Progress& progress) {
+  if (std::holds_alternative<WantedRegions>(experiment.target.wanted))
+    return design_regions(experiment, options, progress);
   require(options.design_only || !experiment.pattern.free_form,
           "a run draws, prints and measures a pattern, and a free form is none: use mezzotint design");
   RunFolder folder(options.folder, experiment_digest(experiment), options.resume);
