@@ -1,0 +1,64 @@
+#include "inverse/design/blur_sensitivity.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "forward/base/error.h"
+#include "forward/pattern/pattern_parameters.h"
+
+namespace mezzotint {
+namespace {
+
+// Waves along one axis, of 16 pixels; low, so that the cure curve is nearly straight over them.
+DesignProblem low_waves() {
+  DesignProblem problem;
+  problem.target = beckmann_target({0.10, 0.02, 0.0_deg});
+  problem.pattern = Ridges{.wavelength = 121.0_um, .height = 3.0_um};
+  problem.free = {{"wavelength_um", 100.0, 140.0, 121.0}};
+  problem.patch = {.pixels = 64, .subsamples = 4};
+  problem.search_draws = 4;
+  problem.fresh_draws = 4;
+  problem.search.max_evaluations = 0;
+  return problem;
+}
+
+TEST(BlurSensitivity, AtTheProfilesOwnBlurIsWhatTheDesignWasJudgedBy) {
+  const DesignProblem problem = low_waves();
+  const Design design = find_design(problem);
+  const BlurredPrint same = blur_sensitivity(problem, design, {1.0}).at(0);
+  EXPECT_EQ(same.slopes.axes.rms_major, design.on_fresh_draws.axes.rms_major);
+  EXPECT_EQ(same.slopes.rms_major_error, design.on_fresh_draws.rms_major_error);
+  EXPECT_EQ(same.width.um(), problem.printer.spread.width.um());
+}
+
+// A Gaussian of σ lets through e^(−2π²σ²/λ²) of a wave; the slopes' larger part along x is that of one wavelength.
+TEST(BlurSensitivity, OfASineIsTheGaussiansTransfer) {
+  DesignProblem problem = low_waves();
+  problem.pattern = Sinusoid{.wavelength_u = 60.32_um, .wavelength_v = 482.56_um, .height = 3.0_um};
+  problem.free = {{"wavelength_u_um", 50.0, 70.0, 60.32}};
+  const Design design = find_design(problem);
+  const auto prints = blur_sensitivity(problem, design);
+  ASSERT_EQ(prints.size(), 3U);
+  const double wavelength_um = get_parameter(design.pattern, "wavelength_u_um");
+  const double sigma_um = problem.printer.spread.width.um();
+  const auto transfer = [&](double factor) {
+    return std::exp(-2.0 * std::pow(std::numbers::pi * factor * sigma_um / wavelength_um, 2));
+  };
+  const auto ratio = [&](std::size_t i) { return prints[i].slopes.axes.rms_major / prints[1].slopes.axes.rms_major; };
+  // The ground adds its variance, a few per cent of this one, and hardly changes the ratio.
+  EXPECT_NEAR(ratio(0), transfer(0.7) / transfer(1.0), 0.01);
+  EXPECT_NEAR(ratio(2), transfer(1.3) / transfer(1.0), 0.01);
+  EXPECT_LT(ratio(2), 0.97);
+}
+
+TEST(BlurSensitivity, RefusesFactorsThatAreNone) {
+  const DesignProblem problem = low_waves();
+  const Design design = find_design(problem);
+  EXPECT_THROW((void)blur_sensitivity(problem, design, {}), InvalidInput);
+  EXPECT_THROW((void)blur_sensitivity(problem, design, {1.0, -0.7}), InvalidInput);
+}
+
+}  // namespace
+}  // namespace mezzotint
