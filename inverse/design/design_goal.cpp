@@ -1,8 +1,10 @@
 #include "inverse/design/design_goal.h"
 
+#include <algorithm>
 #include <string>
 
 #include "forward/base/error.h"
+#include "inverse/design/expected_covariance.h"
 #include "inverse/target/implied_slopes.h"
 
 namespace mezzotint {
@@ -53,7 +55,7 @@ DesignGoal::DesignGoal(const Target& target, const std::optional<LobeTarget>& lo
 }
 
 SlopeCovariance DesignGoal::covariance(const SlopeModel::Shown& shown) const {
-  return by_light_ ? implied_slopes(*lobes_, shown.maps).covariance : shown.covariance;
+  return by_light_ ? through(shown.to_all_draws, implied_slopes(*lobes_, shown.maps).covariance) : shown.covariance;
 }
 
 double DesignGoal::distance(Measure measure, const SlopeModel::Shown& shown) const {
@@ -69,6 +71,37 @@ double DesignGoal::distance(Measure measure, const SlopeModel::Shown& shown) con
 double DesignGoal::distance(const MeasureSum& sum, const SlopeModel::Shown& shown) const {
   double total = 0.0;
   for (const WeightedMeasure& term : sum) total += term.weight * distance(term.measure, shown);
+  return total;
+}
+
+bool DesignGoal::has_slopes(const MeasureSum& sum) const {
+  return std::ranges::all_of(
+      sum, [this](const WeightedMeasure& term) { return lobe_distance_of(term.measure).has_value() || !by_light_; });
+}
+
+double DesignGoal::distance_with_slopes(const MeasureSum& sum, const SlopeModel::Shown& shown,
+                                        SlopeModel::Shown& slopes) const {
+  require(has_slopes(sum), "the covariance that light implies has no slopes here; moments have");
+  slopes = {{}, {}};
+  for (const DirectionMap& map : shown.maps) slopes.maps.emplace_back(map.size(), 0.0);
+  double total = 0.0;
+  for (const WeightedMeasure& term : sum) {
+    const auto lobe = lobe_distance_of(term.measure);
+    if (!lobe) {
+      const CovarianceDistance found = covariance_distance_with_slopes(shown.covariance, target_);
+      total += term.weight * found.value;
+      slopes.covariance.xx += term.weight * found.slopes.xx;
+      slopes.covariance.yy += term.weight * found.slopes.yy;
+      slopes.covariance.xy += term.weight * found.slopes.xy;
+      continue;
+    }
+    const double share = term.weight / static_cast<double>(lobes_->maps.size());
+    for (std::size_t light = 0; light < lobes_->maps.size(); ++light) {
+      const DistanceWithSlopes found = lobe_distance(*lobe, lobes_->grid, shown.maps[light], lobes_->maps[light]);
+      total += share * found.value;
+      for (std::size_t k = 0; k < found.slopes.size(); ++k) slopes.maps[light][k] += share * found.slopes[k];
+    }
+  }
   return total;
 }
 

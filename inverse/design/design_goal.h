@@ -50,6 +50,12 @@ public:
   [[nodiscard]] double distance(Measure measure, const SlopeModel::Shown& shown) const;
   [[nodiscard]] double distance(const MeasureSum& sum, const SlopeModel::Shown& shown) const;
 
+  /// Whether a sum has slopes toward what is shown: all have, but for the covariance that light implies.
+  [[nodiscard]] bool has_slopes(const MeasureSum& sum) const;
+  /// The same distance, which also sets its slopes (in the order and shape of `shown`).
+  [[nodiscard]] double distance_with_slopes(const MeasureSum& sum, const SlopeModel::Shown& shown,
+                                            SlopeModel::Shown& slopes) const;
+
 private:
   Target target_;
   std::optional<LobeTarget> lobes_;

@@ -4,10 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/Eigenvalues>
-
 #include "forward/base/random.h"
 #include "inverse/design/design_variables.h"
+#include "inverse/design/expected_covariance.h"
 #include "inverse/design/printed_moments.h"
 
 namespace mezzotint {
@@ -19,18 +18,6 @@ namespace {
 constexpr double pull = 1e-5;
 
 double square(double value) { return value * value; }
-
-Eigen::Matrix2d matrix_of(const SlopeCovariance& c) {
-  Eigen::Matrix2d matrix;
-  matrix << c.xx, c.xy, c.xy, c.yy;
-  return matrix;
-}
-
-Eigen::Matrix2d power(const Eigen::Matrix2d& matrix, double exponent) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(matrix);
-  const Eigen::Vector2d values = solver.eigenvalues().cwiseMax(1e-14).array().pow(exponent);
-  return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
-}
 
 double share_of_range(const Variable& variable, double from, double to) {
   if (variable.logarithmic) return std::log(to / from) / std::log(variable.high / variable.low);
@@ -63,13 +50,8 @@ std::vector<double> MomentsModel::solve(const Target& wanted, const std::vector<
   return minimize(variables, objective, options).best.values;
 }
 
-// The symmetric B of m = B s B: s^(−½) (s^½ m s^½)^½ s^(−½).
 SlopeCovariance mapped(const SlopeCovariance& moments, const SlopeCovariance& shown, const SlopeCovariance& wanted) {
-  const Eigen::Matrix2d m = matrix_of(moments), s = matrix_of(shown);
-  const Eigen::Matrix2d root = power(s, 0.5), inverse_root = power(s, -0.5);
-  const Eigen::Matrix2d b = inverse_root * power(root * m * root, 0.5) * inverse_root;
-  const Eigen::Matrix2d asked = b * matrix_of(wanted) * b;
-  return {asked(0, 0), asked(1, 1), 0.5 * (asked(0, 1) + asked(1, 0))};
+  return through(symmetric_factor(shown, moments), wanted);
 }
 
 std::vector<std::vector<double>> spread_points(const std::vector<Variable>& variables, std::size_t count,

@@ -8,6 +8,7 @@
 
 #include "forward/base/error.h"
 #include "inverse/design/design_variables.h"
+#include "inverse/design/expected_covariance.h"
 #include "inverse/design/moments_start.h"
 #include "inverse/verification/judge_draws.h"
 
@@ -24,7 +25,6 @@ constexpr int coarse_evaluations_per_variable = 12, fine_evaluations_per_variabl
 bool is_global(const std::string& algorithm) { return algorithm.starts_with("G"); }
 
 const MeasureSum slopes_alone = {{Measure::SlopeCovariance, 1.0}};
-const MeasureSum shape_and_width = {{Measure::CubeRoot, 1.0}, {Measure::Moments, 1.0}};
 
 // A model of some draws, and what it costs to ask it.
 struct Level {
@@ -58,8 +58,8 @@ public:
         log_(log),
         progress_(progress),
         moments_(pattern, variables, printer, patch.wavelength),
-        fine_{SlopeModel(printer, patch, plan.seeds, goal.lobes()), 1.0},
-        coarse_{SlopeModel(printer, patch, first_of(plan.seeds, plan.coarse_draws), goal.lobes()), 1.0} {
+        fine_{model_of(printer, patch, plan.seeds), 1.0},
+        coarse_{model_of(printer, patch, first_of(plan.seeds, plan.coarse_draws)), 1.0} {
     coarse_.cost = coarse_.model.samples() / fine_.model.samples();
   }
 
@@ -67,7 +67,7 @@ public:
     Place start;
     for (const Variable& variable : variables_) start.values.push_back(variable.start);
     const bool chooses = plan_.objective.empty();
-    lowered_ = chooses ? (goal_.by_light() ? shape_and_width : slopes_alone) : plan_.objective;
+    lowered_ = chooses ? (goal_.by_light() ? shape_and_width() : slopes_alone) : plan_.objective;
     if (plan_.search.max_evaluations == 0) return without_a_search(start);
     if (is_global(plan_.search.algorithm))
       return finish(search_from("global", fine_, start, plan_.search.initial_step, 0));
@@ -81,11 +81,26 @@ public:
   }
 
 private:
+  // Slopes alone need no maps; by the adjoint, they are those of the draws.
+  [[nodiscard]] SlopeModel model_of(const PrinterProfile& printer, const PatchOptions& patch,
+                                    const std::vector<std::uint64_t>& seeds) const {
+    const auto& sum = plan_.objective;
+    const bool needs_maps = goal_.by_light() || std::ranges::any_of(sum, [](const WeightedMeasure& term) {
+                              return lobe_distance_of(term.measure).has_value();
+                            });
+    return {printer, patch, seeds, needs_maps ? goal_.lobes() : std::nullopt, {.to_expectation = !wants_slopes()}};
+  }
+
+  // The slopes that the light implies can be freed of what the draws are off by; moments of the light have derivatives.
+  [[nodiscard]] MeasureSum shape_and_width() const {
+    const bool random = smooth_expectation(pattern_).has_value() && !wants_slopes();
+    return {{Measure::CubeRoot, 1.0}, {random ? Measure::SlopeCovariance : Measure::Moments, 1.0}};
+  }
+
   // ---- asking a model
 
   Evaluation ask(const std::string& stage, const Level& level, const MeasureSum& sum,
                  const std::vector<double>& values) {
-    if (progress_) report(progress_, "search", std::min(1.0, spent_ / plan_.search.max_evaluations), in_words(stage));
     Evaluation evaluation;
     const auto earlier = log_ != nullptr ? log_->replay(stage, values) : std::nullopt;
     if (earlier) {
@@ -95,24 +110,71 @@ private:
       const SlopeCovariance& c = evaluation.covariance;
       if (log_ != nullptr) log_->append({stage, values, {evaluation.objective, c.xx, c.yy, c.xy}});
     }
-    spent_ += level.cost;
-    outcome_.history.push_back({stage, {values, evaluation.objective}, level.cost});
-    if (std::isfinite(evaluation.objective)) last_ = evaluation.objective;
+    note(stage, values, evaluation.objective, level.cost);
     return evaluation;
   }
 
+  // The same with slopes, for the cost of about three.
+  double ask_with_slopes(const std::string& stage, const Level& level, const std::vector<double>& values,
+                         std::vector<double>& slopes) {
+    const auto earlier = log_ != nullptr ? log_->replay(stage, values) : std::nullopt;
+    double objective = 0.0;
+    if (earlier) {
+      objective = earlier->at(0);
+      slopes.assign(earlier->begin() + 1, earlier->end());
+    } else {
+      objective = made_with_slopes(level, values, slopes);
+      if (log_ != nullptr) {
+        std::vector<double> results = {objective};
+        results.insert(results.end(), slopes.begin(), slopes.end());
+        log_->append({stage, values, results});
+      }
+    }
+    note(stage, values, objective, 3.0 * level.cost);
+    return objective;
+  }
+
+  double made_with_slopes(const Level& level, const std::vector<double>& values, std::vector<double>& slopes) {
+    std::vector<std::string> names;
+    for (const Variable& variable : variables_) names.push_back(variable.name);
+    const auto figure = [this](const SlopeModel::Shown& shown, SlopeModel::Shown& toward) {
+      return goal_.distance_with_slopes(lowered_, shown, toward);
+    };
+    return guarded(
+        [&] {
+          return level.model.figure_with_slopes(with_values(pattern_, variables_, values), names, figure, slopes);
+        },
+        std::numeric_limits<double>::quiet_NaN());
+  }
+
+  void note(const std::string& stage, const std::vector<double>& values, double objective, double cost) {
+    spent_ += cost;
+    outcome_.history.push_back({stage, {values, objective}, cost});
+    if (std::isfinite(objective)) last_ = objective;
+    if (progress_) report(progress_, "search", std::min(1.0, spent_ / plan_.search.max_evaluations), in_words(stage));
+  }
+
   Evaluation made(const Level& level, const MeasureSum& sum, const std::vector<double>& values) {
+    return guarded(
+        [&]() -> Evaluation {
+          const SlopeModel::Shown shown = level.model.shown(with_values(pattern_, variables_, values));
+          return {goal_.distance(sum, shown), goal_.covariance(shown)};
+        },
+        Evaluation{});
+  }
+
+  // An evaluation that cannot be made counts as worse than all others, and is told of at the end.
+  template <typename Make, typename Result>
+  Result guarded(const Make& make, Result failed) {
     try {
-      const SlopeModel::Shown shown = level.model.shown(with_values(pattern_, variables_, values));
-      return {goal_.distance(sum, shown), goal_.covariance(shown)};
+      return make();
     } catch (const InvalidInput& error) {
-      ++failures_;
       failure_ = error.what();
     } catch (const MethodError& error) {
-      ++failures_;
       failure_ = error.what();
     }
-    return {};
+    ++failures_;
+    return failed;
   }
 
   [[nodiscard]] std::string in_words(const std::string& stage) const {
@@ -220,11 +282,9 @@ private:
     options.initial_step = step;
     if (lowered_.size() == 1 && lowered_.front().measure == Measure::SlopeCovariance)
       options.good_enough = slopes_good_enough();
-    const auto objective = [&](const std::vector<double>& values) {
-      return ask(stage, level, lowered_, values).objective;
-    };
     try {
-      const MinimizeResult found = minimize(variables, objective, options);
+      const MinimizeResult found = by_slopes() ? minimize_with_slopes(variables, steep(stage, level), options)
+                                               : minimize(variables, plain(stage, level), options);
       words_ = found.outcome;
       converged_ = found.converged;
       return {found.best.values, found.best.objective};
@@ -232,6 +292,21 @@ private:
       failure_ = failure_.empty() ? error.what() : failure_;
       return {from.values, infinity};
     }
+  }
+
+  [[nodiscard]] Objective plain(const std::string& stage, const Level& level) {
+    return [this, stage, &level](const std::vector<double>& values) {
+      return ask(stage, level, lowered_, values).objective;
+    };
+  }
+
+  // Algorithms that take slopes get them by the adjoint, where the goal has them.
+  [[nodiscard]] bool wants_slopes() const { return plan_.search.algorithm.find("D_") == 1; }
+  [[nodiscard]] bool by_slopes() const { return wants_slopes() && goal_.has_slopes(lowered_); }
+  [[nodiscard]] SteepObjective steep(const std::string& stage, const Level& level) {
+    return [this, stage, &level](const std::vector<double>& values, std::vector<double>& slopes) {
+      return ask_with_slopes(stage, level, values, slopes);
+    };
   }
 
   // ---- rung 4: is the shape within reach?

@@ -9,6 +9,7 @@
 #include <tbb/parallel_for.h>
 
 #include "forward/base/error.h"
+#include "inverse/design/expected_covariance.h"
 
 namespace mezzotint {
 
@@ -80,8 +81,8 @@ double SlopeModel::samples() const {
   return side * side * static_cast<double>(seeds_.size());
 }
 
-ReliefSlopes SlopeModel::printed_slopes(const Pattern& pattern, std::uint64_t seed) const {
-  const GrayImage gray = expose(pixel_heights(draw_instance(pattern, seed), printer_, patch_.pixels), printer_).image;
+ReliefSlopes SlopeModel::printed_slopes(const HeightField& heights, std::uint64_t seed) const {
+  const GrayImage gray = expose(heights, printer_).image;
   ReliefSlopes slopes = process_.slopes(options_.levels == GrayLevels::Quantized ? quantize(gray, printer_) : gray);
   if (!options_.drawn_ground) return slopes;
   const Length pitch = printer_.pixel_pitch / static_cast<double>(patch_.subsamples);
@@ -104,12 +105,34 @@ SlopeModel::Shown SlopeModel::shown_by(const ReliefSlopes& slopes) const {
 
 std::vector<SlopeModel::Shown> SlopeModel::draws(const Pattern& pattern) const {
   std::vector<Shown> draws(seeds_.size());
-  tbb::parallel_for(std::size_t{0}, seeds_.size(),
-                    [&](std::size_t i) { draws[i] = shown_by(printed_slopes(pattern, seeds_[i])); });
+  tbb::parallel_for(std::size_t{0}, seeds_.size(), [&](std::size_t i) {
+    const HeightField heights = pixel_heights(draw_instance(pattern, seeds_[i]), printer_, patch_.pixels);
+    draws[i] = shown_by(printed_slopes(heights, seeds_[i]));
+  });
   return draws;
 }
 
-SlopeModel::Shown SlopeModel::shown(const Pattern& pattern) const { return mean_of(draws(pattern)); }
+SlopeModel::Shown SlopeModel::shown(const Pattern& pattern) const {
+  const auto before_printing = options_.to_expectation ? smooth_expectation(pattern) : std::nullopt;
+  return before_printing ? expected(pattern, *before_printing) : mean_of(draws(pattern));
+}
+
+SlopeModel::Shown SlopeModel::expected(const Pattern& pattern, const SlopeCovariance& before_printing) const {
+  std::vector<Shown> draws(seeds_.size()), unprinted(seeds_.size());
+  tbb::parallel_for(std::size_t{0}, seeds_.size(), [&](std::size_t i) {
+    const HeightField heights = pixel_heights(draw_instance(pattern, seeds_[i]), printer_, patch_.pixels);
+    draws[i] = shown_by(printed_slopes(heights, seeds_[i]));
+    unprinted[i].covariance = point_slope_covariance(heights);
+  });
+  Shown mean = mean_of(draws);
+  const double ground = mean_ground_ * mean_ground_;
+  mean.to_all_draws = symmetric_factor(mean_of(unprinted).covariance, before_printing);
+  mean.covariance =
+      through(mean.to_all_draws, {mean.covariance.xx - ground, mean.covariance.yy - ground, mean.covariance.xy});
+  mean.covariance.xx += ground;
+  mean.covariance.yy += ground;
+  return mean;
+}
 
 SlopeModel::Shown mean_of(const std::vector<SlopeModel::Shown>& draws) {
   require(!draws.empty(), "the mean of no draws");

@@ -21,6 +21,10 @@ struct SlopeModelOptions {
   GrayLevels levels = GrayLevels::Continuous;
   bool drawn_ground = false;  ///< each draw on a ground of its own, as printed; else the mean over all grounds
   double place_x = 0.5, place_y = 0.5;  ///< of the samples in their sub-pixels
+  /// The covariance that `shown` gives is brought to the mean over all draws, where the pattern is smooth: what the
+  /// draws lack or have too much shows as well in their unprinted heights, whose expectation is known (a control
+  /// variate). A search for slopes then sees far less of its draws. Maps are those of the draws.
+  bool to_expectation = false;
 };
 
 /// What a printed pattern shows by its slopes alone: the model that a search asks at every step.
@@ -41,6 +45,9 @@ public:
   struct Shown {
     SlopeCovariance covariance;      ///< of the slopes about each draw's mean, the ground's included
     std::vector<DirectionMap> maps;  ///< one a direction of the light
+    /// The symmetric B that brings a covariance C of these draws to the mean over all of them, B·C·B; 1 where that is
+    /// not known. `covariance` is there already.
+    SlopeCovariance to_all_draws{1.0, 1.0, 0.0};
   };
   /// Mean over the draws.
   [[nodiscard]] Shown shown(const Pattern& pattern) const;
@@ -63,7 +70,8 @@ public:
   [[nodiscard]] double samples() const;
 
 private:
-  [[nodiscard]] ReliefSlopes printed_slopes(const Pattern& pattern, std::uint64_t seed) const;
+  [[nodiscard]] ReliefSlopes printed_slopes(const HeightField& heights, std::uint64_t seed) const;
+  [[nodiscard]] Shown expected(const Pattern& pattern, const SlopeCovariance& before_printing) const;
   [[nodiscard]] Shown shown_by(const ReliefSlopes& slopes) const;
   [[nodiscard]] ReliefSlopes slopes_toward(const ReliefSlopes& slopes, const Shown& toward, double share) const;
 

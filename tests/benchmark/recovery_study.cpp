@@ -10,16 +10,10 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <string>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
-
-#include "forward/base/error.h"
-#include "forward/base/random.h"
-#include "forward/pattern/pattern_parameters.h"
-#include "inverse/design/design.h"
+#include "pattern_families.h"
 
 namespace {
 
@@ -29,86 +23,7 @@ constexpr DirectionGrid bins{48, 48};
 const std::vector<DirectionAngles> lights = {{20.0_deg, 0.0_deg}, {20.0_deg, 90.0_deg}};
 const Material material = Dielectric{1.5};
 
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-// A family of patterns, what is free, and the narrower ranges that truths are drawn from.
-struct Family {
-  char letter;
-  Pattern pattern;
-  std::vector<FreeParameter> free, truth;
-  std::size_t pixels, draws;
-  double tolerance;
-};
-
-std::vector<FreeParameter> lengths(const std::vector<FreeParameter>& free) {
-  std::vector<FreeParameter> truth = free;
-  for (FreeParameter& p : truth) {
-    if (p.name.ends_with("direction_deg")) continue;
-    const double room = std::pow(p.high / p.low, 0.12);  // truths keep off the bounds
-    p.low *= room;
-    p.high /= room;
-  }
-  return truth;
-}
-
-std::vector<Family> families() {
-  std::vector<Family> all;
-  const double turn = 180.0;
-  const std::vector<FreeParameter> s = {{"wavelength_u_um", 30.2, 300.0, {}},
-                                        {"wavelength_v_um", 30.2, 300.0, {}},
-                                        {"direction_deg", -turn, turn, {}},
-                                        {"height_um", 3.0, 17.5, {}}};
-  all.push_back({'S', Sinusoid{}, s, lengths(s), 96, 4, 0.02});
-  const std::vector<FreeParameter> r = {
-      {"parts[0].wavelength_um", 45.0, 300.0, {}},   {"parts[0].direction_deg", -turn, turn, {}},
-      {"parts[0].height_um", 2.0, 11.0, {}},         {"parts[0].skew", 0.15, 0.85, {}},
-      {"parts[1].wavelength_u_um", 45.0, 300.0, {}}, {"parts[1].height_um", 2.0, 6.5, {}}};
-  all.push_back({'R', PatternSum{{{Ridges{}}, {Sinusoid{}}}}, r, lengths(r), 128, 8, 0.02});
-  const std::vector<FreeParameter> n = {{"scale_um", 60.0, 300.0, {}},
-                                        {"stretch", 1.0, 6.0, {}},
-                                        {"direction_deg", -turn, turn, {}},
-                                        {"height_um", 3.0, 17.5, {}},
-                                        {"hurst", 0.3, 0.95, {}}};
-  all.push_back({'N', FractionalBrownianMotion{.octaves = 2}, n, lengths(n), 128, 8, 0.05});
-  const std::vector<FreeParameter> c = {
-      {"parts[0].wavelength_um", 45.0, 300.0, {}},   {"parts[0].direction_deg", -turn, turn, {}},
-      {"parts[0].height_um", 1.5, 7.0, {}},          {"parts[0].skew", 0.15, 0.85, {}},
-      {"parts[1].wavelength_u_um", 45.0, 300.0, {}}, {"parts[1].height_um", 1.0, 4.5, {}},
-      {"parts[2].scale_um", 60.0, 300.0, {}},        {"parts[2].height_um", 1.5, 6.0, {}}};
-  all.push_back({'C', PatternSum{{{Ridges{}}, {Sinusoid{}}, {Noise{}}}}, c, lengths(c), 128, 8, 0.05});
-  return all;
-}
-
-Pattern truth_of(const Family& family, std::uint64_t target) {
-  const RandomStream stream(1000 + target, RandomPurpose::StudySample);
-  Pattern pattern = family.pattern;
-  for (std::size_t i = 0; i < family.truth.size(); ++i) {
-    const FreeParameter& p = family.truth[i];
-    const double u = stream.uniform4(i)[0];
-    const bool additive = p.low <= 0.0 || p.name.ends_with("skew") || p.name.ends_with("hurst");
-    set_parameter(pattern, p.name, additive ? p.low + u * (p.high - p.low) : p.low * std::pow(p.high / p.low, u));
-  }
-  return pattern;
-}
-
 LobeTarget empty_target() { return {SmoothGrid(bins), material, lights, {}}; }
-
-double largest_error(const SlopeCovariance& found, const SlopeCovariance& truth) {
-  Eigen::Matrix2d f, t;
-  f << found.xx, found.xy, found.xy, found.yy;
-  t << truth.xx, truth.xy, truth.xy, truth.yy;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> solver(f, t, Eigen::EigenvaluesOnly);
-  return (solver.eigenvalues().array() - 1.0).abs().maxCoeff();
-}
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
 
 void study(const Family& family, int targets) {
   const PrinterProfile printer;
@@ -174,7 +89,5 @@ void study(const Family& family, int targets) {
 int main(int count, char** arguments) {
   const int targets = count > 1 ? std::atoi(arguments[1]) : 40;
   const std::string letters = count > 2 ? arguments[2] : "SRNC";
-  for (const Family& family : families()) {
-    if (letters.find(family.letter) != std::string::npos) study(family, targets);
-  }
+  for (const Family& family : families(letters)) study(family, targets);
 }
