@@ -33,7 +33,7 @@ Json json_of(const std::vector<BorderPoint>& points, const GamutKind& kind) {
     Json json = json_of(point.alpha);
     json["relative_tolerance"] = point.tolerance;
     for (std::size_t i = 0; i < point.values.size(); ++i) {
-      const FreeNumber& free = kind.free[i];
+      const GamutParameter& free = kind.free[i];
       const bool of_sum = parts_of(kind.pattern) != nullptr;
       json["parameters"][of_sum ? fmt::format("part_{}.{}", free.part, free.name) : free.name] = point.values[i];
     }

@@ -35,8 +35,8 @@ Room room_of(const PrinterProfile& printer, const GamutBounds& bounds) {
 }
 
 // The free numbers of a simple kind; of octaves the finest one must keep its pixels.
-std::vector<FreeNumber> free_of(const std::string& name, std::size_t part, const Room& room) {
-  const FreeNumber height{part, "height_um", room.least_height_um, room.height_um};
+std::vector<GamutParameter> free_of(const std::string& name, std::size_t part, const Room& room) {
+  const GamutParameter height{part, "height_um", room.least_height_um, room.height_um};
   const double stretch = std::min(64.0, room.longest_um / room.least_um);
   if (name == "noise")
     return {{part, "scale_um", room.least_um, room.longest_um}, {part, "stretch", 1.0, stretch}, height};
@@ -93,7 +93,7 @@ GamutKind gamut_kind(const std::string& name, const PrinterProfile& printer, con
     kind.pattern = sum;
   }
   for (std::size_t part = 0; part < parts.size(); ++part) {
-    for (FreeNumber& free : free_of(parts[part], part, room)) kind.free.push_back(std::move(free));
+    for (GamutParameter& free : free_of(parts[part], part, room)) kind.free.push_back(std::move(free));
   }
   return kind;
 }

@@ -18,7 +18,7 @@ struct GamutBounds {
 
 /// A number of a pattern that may be chosen between bounds, of the pattern itself or of one of its parts. All are
 /// stepped by factors.
-struct FreeNumber {
+struct GamutParameter {
   std::size_t part = 0;  ///< of a sum; 0 of a simple pattern
   std::string name;      ///< as in pattern_parameters
   double low = 0.0;
@@ -30,7 +30,7 @@ struct FreeNumber {
 struct GamutKind {
   std::string name;
   Pattern pattern;
-  std::vector<FreeNumber> free;
+  std::vector<GamutParameter> free;
 };
 
 /// "noise", "fbm", "line_integral_convolution", "sinusoid", "ridges", "ridges+sinusoid", "ridges+sinusoid+noise".

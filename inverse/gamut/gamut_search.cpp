@@ -35,7 +35,7 @@ std::vector<double> inside(const GamutKind& kind, std::vector<double> values) {
 SearchStep local_search(const SlopeModel& model, const SquaresFigure& figure, const std::vector<double>& start) {
   std::vector<Variable> variables;
   for (std::size_t i = 0; i < start.size(); ++i) {
-    const FreeNumber& free = model.kind.free[i];
+    const GamutParameter& free = model.kind.free[i];
     variables.push_back({free.name, free.low, free.high, start[i], true});
   }
   const MinimizeOptions options{.max_evaluations = 220, .relative_tolerance = 1e-4};

@@ -59,7 +59,7 @@ std::vector<double> drawn_values(const GamutKind& kind, const Draw& draw) {
 std::vector<double> steep_values(const GamutKind& kind, const Draw& draw) {
   std::vector<double> values = drawn_values(kind, draw);
   for (std::size_t i = 0; i < kind.free.size(); ++i) {
-    const FreeNumber& free = kind.free[i];
+    const GamutParameter& free = kind.free[i];
     const double share = draw.uniform(static_cast<std::uint32_t>(i) + 40);
     if (free.name == "height_um") values[i] = free.high * (0.9 + 0.1 * share);
     if (free.name == "scale_um" || free.name == "wavelength_u_um" || free.name == "wavelength_um")
@@ -201,7 +201,7 @@ void direction_influence(const PrinterProfile& printer) {
     const GamutKind kind = gamut_kind(name, printer);
     for (const double pixels : {4.0, 5.0, 8.0}) {
       std::vector<double> values;
-      for (const FreeNumber& free : kind.free) {
+      for (const GamutParameter& free : kind.free) {
         const bool length = free.name != "height_um" && free.name != "stretch" && free.name != "skew";
         values.push_back(free.name == "height_um" ? free.high
                          : length                 ? pixels * printer.pixel_pitch.um() * 1.003

@@ -56,7 +56,7 @@ TEST(Gamut, CallsWhatWasPrintedReachable) {
     const GamutKind kind = gamut_kind(name, printer);
     std::vector<double> values;
     for (std::size_t k = 0; k < kind.free.size(); ++k) {
-      const FreeNumber& free = kind.free[k];
+      const GamutParameter& free = kind.free[k];
       const double low = free.name == "height_um" ? free.high / 6.0 : free.low;
       values.push_back(low * std::pow(free.high / low, k < 4 ? u.at(k) : v.at(k - 4)));
     }
