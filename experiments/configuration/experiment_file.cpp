@@ -132,7 +132,7 @@ Experiment read_experiment(const std::filesystem::path& path, const std::vector<
   experiment.measurement = read_measurement(root.table("measurement"));
   root.finish();
   require_feasible(root.table("print"), root.table("measurement"), experiment);
-  if (experiment.pattern.free.empty()) {
+  if (experiment.pattern.free.empty() && !experiment.pattern.free_form) {
     root.complain("pattern",
                   "no parameter of the pattern is free; a search needs one, like scale_um = { free = [30.2, 400.0] }");
   }

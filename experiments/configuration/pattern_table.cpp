@@ -177,11 +177,35 @@ void read_grid(TomlTable table, PatternFile& file) {
   table.finish();
 }
 
+constexpr const char* free_form_kind = "free_form";
+
+FreeFormOptions read_free_form(TomlTable& table) {
+  FreeFormOptions options;
+  options.pixels = static_cast<std::size_t>(table.integer("pixels", 16, 1024, std::int64_t(options.pixels)));
+  options.evaluations = static_cast<int>(table.integer("evaluations", 8, 100'000, options.evaluations));
+  options.start_evaluations =
+      static_cast<int>(table.integer("start_evaluations", 1, 10'000, options.start_evaluations));
+  options.traced_corrections = static_cast<int>(table.integer("traced_corrections", 0, 4, options.traced_corrections));
+  options.algorithm = table.text("algorithm", options.algorithm);
+  if (!options.algorithm.starts_with("LD_") || !is_known_algorithm(options.algorithm)) {
+    table.complain("algorithm",
+                   "a free form has thousands of unknowns and needs a local method with slopes, like "
+                   "\"LD_MMA\" or \"LD_LBFGS\"; \"" +
+                       options.algorithm + "\" is none");
+  }
+  return options;
+}
+
 }  // namespace
 
 PatternSpecification read_pattern(TomlTable table, bool table_is_there, PatternUse use) {
   if (!table_is_there) return default_specification();
   PatternSpecification result;
+  if (use == PatternUse::Search && table.has("kind") && table.text("kind") == free_form_kind) {
+    result.free_form = read_free_form(table);
+    table.finish();
+    return result;
+  }
   if (!table.has("kind")) result.reason = default_specification().reason;
   result.pattern = read_part(std::move(table), {.use = use, .free = &result.free});
   return result;

@@ -27,20 +27,6 @@ Json json_of(const Pattern& pattern) {
   return json;
 }
 
-Json json_of(const GamutVerdict& verdict) {
-  Json json = {{"kind", verdict.kind},
-               {"place", to_string(verdict.place)},
-               {"why", verdict.why},
-               {"by_formula", verdict.by_formula},
-               {"nearest",
-                {{"alpha_x", Quantity{verdict.nearest.x, "1", verdict.nearest_error * verdict.nearest.x}},
-                 {"alpha_y", Quantity{verdict.nearest.y, "1", verdict.nearest_error * verdict.nearest.y}}}},
-               {"covariance_distance", verdict.distance},
-               {"prints", verdict.prints}};
-  json["pattern"] = json_of(verdict.pattern);
-  return json;
-}
-
 Json json_of(const std::vector<BorderPoint>& points, const GamutKind& kind) {
   Json list = Json::array();
   for (const BorderPoint& point : points) {
@@ -92,6 +78,20 @@ std::string in_words(const AskedTarget& target) {
                      in_words(best.nearest), parameters_in_words(best.pattern));
 }
 
+Json to_json(const GamutVerdict& verdict) {
+  Json json = {{"kind", verdict.kind},
+               {"place", to_string(verdict.place)},
+               {"why", verdict.why},
+               {"by_formula", verdict.by_formula},
+               {"nearest",
+                {{"alpha_x", Quantity{verdict.nearest.x, "1", verdict.nearest_error * verdict.nearest.x}},
+                 {"alpha_y", Quantity{verdict.nearest.y, "1", verdict.nearest_error * verdict.nearest.y}}}},
+               {"covariance_distance", verdict.distance},
+               {"prints", verdict.prints}};
+  json["pattern"] = json_of(verdict.pattern);
+  return json;
+}
+
 Json to_json(const GamutFormula& formula) {
   return {{"floor_alpha", Quantity{formula.floor_alpha, "1", {}}},
           {"coherent_share", Quantity{formula.coherent_share, "1", {}}},
@@ -107,7 +107,7 @@ Json to_json(const AskedTarget& target) {
   json["reached"] = target.is_reached();
   json["best_kind"] = target.best().kind;
   json["verdicts"] = Json::array();
-  for (const GamutVerdict& verdict : target.verdicts) json["verdicts"].push_back(json_of(verdict));
+  for (const GamutVerdict& verdict : target.verdicts) json["verdicts"].push_back(to_json(verdict));
   return json;
 }
 

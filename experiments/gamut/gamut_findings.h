@@ -35,6 +35,7 @@ struct GamutFindings {
 [[nodiscard]] nlohmann::ordered_json to_json(const GamutFindings& findings);
 [[nodiscard]] nlohmann::ordered_json to_json(const GamutFormula& formula);
 [[nodiscard]] nlohmann::ordered_json to_json(const AskedTarget& target);
+[[nodiscard]] nlohmann::ordered_json to_json(const GamutVerdict& verdict);
 /// gamut.csv: a border point a line.
 [[nodiscard]] std::string to_csv(const GamutMap& map);
 

@@ -95,7 +95,7 @@ LobeJudgement judgement_from_json(const Json& json) {
   return judgement;
 }
 
-Json verification_to_json(const Verification& v) {
+Json to_json_figures(const Verification& v) {
   Json json = {{"seeds", v.seeds},
                {"traced", judgement_to_json(v.traced)},
                {"by_slope", judgement_to_json(v.by_slope)},
@@ -109,7 +109,7 @@ Json verification_to_json(const Verification& v) {
   }
   return json;
 }
-Verification verification_from_json(const Json& json) {
+Verification figures_from_json(const Json& json) {
   Verification v{.seeds = json.at("seeds"),
                  .traced = judgement_from_json(json.at("traced")),
                  .by_slope = judgement_from_json(json.at("by_slope")),
@@ -154,6 +154,9 @@ Variable variable_from_json(const Json& json) {
 
 }  // namespace
 
+Json to_json(const Verification& verification) { return to_json_figures(verification); }
+Verification verification_from_json(const Json& json) { return figures_from_json(json); }
+
 Json to_json(const Target& target) {
   return {{"kind", target.kind},
           {"slopes", axes_to_json(target.slopes)},
@@ -190,7 +193,7 @@ Json to_json(const Design& design) {
   for (const auto& variable : design.variables) json["variables"].push_back(variable_to_json(variable));
   if (design.on_search_lobes) json["on_search_lobes"] = judgement_to_json(*design.on_search_lobes);
   if (design.on_fresh_lobes) json["on_fresh_lobes"] = judgement_to_json(*design.on_fresh_lobes);
-  if (design.traced) json["traced"] = verification_to_json(*design.traced);
+  if (design.traced) json["traced"] = to_json(*design.traced);
   json["held_out_ratio"] = number_to_json(design.held_out_ratio);
   json["intervals"] = intervals_to_json(design.intervals);
   return json;

@@ -12,6 +12,10 @@ namespace mezzotint {
 [[nodiscard]] nlohmann::ordered_json to_json(const Target& target);
 [[nodiscard]] nlohmann::ordered_json to_json(const Design& design);
 
+/// The figures; the lobes themselves are pictures of their own.
+[[nodiscard]] nlohmann::ordered_json to_json(const Verification& verification);
+
+[[nodiscard]] Verification verification_from_json(const nlohmann::ordered_json& json);
 [[nodiscard]] Target target_from_json(const nlohmann::ordered_json& json);
 [[nodiscard]] Design design_from_json(const nlohmann::ordered_json& json);
 

@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 
 #include "experiments/run/design_file.h"
+#include "experiments/run/region_designs.h"
 #include "experiments/run/run_files.h"
+#include "experiments/run/search_free_form.h"
 #include "experiments/run/stages.h"
 #include "experiments/version.h"
 #include "forward/base/digest.h"
@@ -28,15 +30,6 @@ std::string printer_text(const PrinterProfile& p) {
   return text;
 }
 
-std::vector<Stage> wanted_stages(const std::string& last) {
-  std::vector<Stage> stages;
-  for (const auto& stage : all_stages()) {
-    stages.push_back(stage);
-    if (stage.name == last) break;
-  }
-  return stages;
-}
-
 // Seconds are the one thing that differs from run to run, so they have a file of their own.
 class Timing {
 public:
@@ -54,17 +47,36 @@ private:
   nlohmann::ordered_json seconds_;
 };
 
+// Of the last run in the folder: its summary where it went on beyond the design.
+RunOutcome outcome_of(const RunFolder& folder) {
+  const auto json = read_json(folder / "design.json");
+  const auto summary_file = folder / "summary.json";
+  auto summary = std::filesystem::exists(summary_file) ? read_json(summary_file) : json;
+  const bool met = json.at("met").get<bool>() && summary.value("simulation_tolerance_met", true);
+  const std::string verdict =
+      json.contains("free_form")
+          ? free_form_verdict(json)
+          : verdict_sentence(target_from_json(read_json(folder / "target.json")), design_from_json(json));
+  return {folder.path(), met, verdict, std::move(summary)};
+}
+
 }  // namespace
 
 const std::vector<Stage>& all_stages() {
   static const std::vector<Stage> stages = {
-      {"target", run_target},   {"search", run_search},   {"print", run_print},  {"measure", run_measure},
-      {"compare", run_compare}, {"scatter", run_scatter}, {"report", run_report}};
+      {"target", run_target},   {"gamut", run_gamut},     {"search", run_search},   {"print", run_print},
+      {"measure", run_measure}, {"compare", run_compare}, {"scatter", run_scatter}, {"report", run_report}};
+  return stages;
+}
+
+const std::vector<Stage>& design_stages() {
+  static const std::vector<Stage> stages = {
+      {"target", run_target}, {"gamut", run_gamut}, {"search", run_search}, {"page", run_page}};
   return stages;
 }
 
 bool is_by_light(const Experiment& experiment) {
-  if (is_lobe_alone(experiment.target)) return true;
+  if (is_lobe_alone(experiment.target) || experiment.pattern.free_form) return true;
   return experiment.search.by_light() || (experiment.search.objective.empty() && experiment.target.kind == "scan");
 }
 
@@ -80,10 +92,14 @@ std::string experiment_digest(const Experiment& experiment) {
 }
 
 RunOutcome run_experiment(const Experiment& experiment, const RunOptions& options, const Progress& progress) {
+  if (std::holds_alternative<WantedRegions>(experiment.target.wanted))
+    return design_regions(experiment, options, progress);
+  require(options.design_only || !experiment.pattern.free_form,
+          "a run draws, prints and measures a pattern, and a free form is none: use mezzotint design");
   RunFolder folder(options.folder, experiment_digest(experiment), options.resume);
   Timing timing(folder);
   bool earlier_stage_ran = false;
-  for (const auto& stage : wanted_stages(options.last_stage)) {
+  for (const auto& stage : options.design_only ? design_stages() : all_stages()) {
     if (!earlier_stage_ran && folder.is_finished(stage.name)) {
       report(progress, stage.name, 1.0, "finished before");
       continue;
@@ -91,18 +107,12 @@ RunOutcome run_experiment(const Experiment& experiment, const RunOptions& option
     earlier_stage_ran = true;
     report(progress, stage.name, 0.0);
     const auto begin = std::chrono::steady_clock::now();
-    folder.finish(stage.name, stage.run({experiment, folder, progress}));
+    folder.finish(stage.name, stage.run({experiment, folder, progress, options.say}));
     timing.add(stage.name, std::chrono::steady_clock::now() - begin);
     timing.save(folder);
     report(progress, stage.name, 1.0);
   }
-  const auto design = design_from_json(read_json(folder / "design.json"));
-  const auto summary_file = folder / "summary.json";
-  const bool has_summary = std::filesystem::exists(summary_file);
-  const auto target = target_from_json(read_json(folder / "target.json"));
-  auto summary = has_summary ? read_json(summary_file) : to_json(design);
-  const bool met = design.met && summary.value("simulation_tolerance_met", true);
-  return {folder.path(), met, verdict_sentence(target, design), std::move(summary)};
+  return outcome_of(folder);
 }
 
 }  // namespace mezzotint

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
 #include <nlohmann/json.hpp>
 
@@ -12,8 +13,9 @@ namespace mezzotint {
 struct RunOptions {
   std::filesystem::path folder;
   bool resume = false;
-  /// The last stage that is wanted ("search" for `mezzotint design`); the report is made in any case.
-  std::string last_stage = "report";
+  bool design_only = false;  ///< `mezzotint design`: nothing is printed
+  /// Where the user is told at once what cannot wait for the end: whether the target is within the printer's gamut.
+  std::function<void(const std::string&)> say = [](const std::string&) {};
 };
 
 /// What a run came to.

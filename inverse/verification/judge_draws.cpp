@@ -108,10 +108,15 @@ Estimate mean_with_error(const std::vector<double>& values) {
 
 MeanLobe mean_lobe(const Draws& draws, std::size_t light) {
   const std::size_t bins = draws.front()[light].size();
-  MeanLobe lobe{DirectionMap(bins), DirectionMap(bins)};
+  MeanLobe lobe{DirectionMap(bins), DirectionMap(bins), DirectionMap(bins), DirectionMap(bins)};
+  const auto halves = [&](std::size_t i) -> DirectionMap& { return i % 2 == 0 ? lobe.half_a : lobe.half_b; };
+  const std::size_t in_a = (draws.size() + 1) / 2, in_b = draws.size() / 2;
   std::vector<double> values(draws.size());
   for (std::size_t bin = 0; bin < bins; ++bin) {
-    for (std::size_t i = 0; i < draws.size(); ++i) values[i] = draws[i][light][bin];
+    for (std::size_t i = 0; i < draws.size(); ++i) {
+      values[i] = draws[i][light][bin];
+      halves(i)[bin] += values[i] / static_cast<double>(i % 2 == 0 ? in_a : in_b);
+    }
     const Estimate estimate = mean_with_error(values);
     lobe.mean[bin] = estimate.value;
     lobe.standard_error[bin] = estimate.standard_error;

@@ -12,6 +12,7 @@ namespace mezzotint {
 /// from the spread between draws.
 struct MeanLobe {
   DirectionMap mean, standard_error;
+  DirectionMap half_a, half_b;  ///< means of every other draw: independent of each other
 };
 
 /// How far the mean lobe of some draws is from a goal, by one distance: as a square (what `lobe_distance` gives and

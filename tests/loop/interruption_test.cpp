@@ -94,7 +94,7 @@ TEST(Resume, OfAFinishedRunTouchesNothing) {
   const Ending again = here.mezzotint({"run", "small.toml", "--out", "run", "--resume"});
   EXPECT_EQ(again.status, 0);
   // Nothing is done twice: by what each stage says, not by a clock, which a busy machine turns round.
-  for (const std::string stage : {"target", "search", "print", "measure", "compare", "scatter", "report"}) {
+  for (const std::string stage : {"target", "gamut", "search", "print", "measure", "compare", "scatter", "report"}) {
     EXPECT_NE(again.err.find(stage + ": 100 %, took 0 s: finished before"), std::string::npos) << again.err;
     EXPECT_EQ(again.err.find(stage + ": 0 %"), std::string::npos) << again.err;
   }

@@ -42,6 +42,17 @@ TEST_F(TwoRanks, GiveTheBytesOfOneProcess) {
   EXPECT_EQ(out.find("wrote"), out.rfind("wrote")) << "both ranks speak";
 }
 
+TEST_F(TwoRanks, MakeTheDesignsOfOneProcess) {
+  here.write("other.toml", small_experiment("alpha_x   = 0.30", "alpha_x = 0.25"));
+  ASSERT_EQ(here.mezzotint(words("design small.toml other.toml -q -o one")).status, 0);
+  ASSERT_EQ(with_two_ranks(here, "design small.toml other.toml -q -o two"), 0) << here.read("err.txt");
+  for (const char* name : {"small", "other"}) {
+    const auto files = [&](const std::string& folder) { return here.files((folder + "/" + name).c_str()); };
+    EXPECT_TRUE(files("one").contains("design.json"));
+    EXPECT_EQ(differences(files("one"), files("two")), "") << name;
+  }
+}
+
 TEST_F(TwoRanks, StopTogetherWithOneMessage) {
   here.write("printer.toml", "nmae = \"dlp9000\"\n");
   EXPECT_EQ(with_two_ranks(here, std::string(small_gamut) + " -o two"), 2);

@@ -13,7 +13,10 @@ const std::vector<std::string> promised_files = {"target.json",        "design.j
                                                  "comparison.json",    "bsdf_predicted_0.exr",
                                                  "bsdf_printed_0.exr", "bsdf_measured_0.exr",
                                                  "report.html",        "summary.json",
-                                                 "run.json",           "timing.json"};
+                                                 "run.json",           "timing.json",
+                                                 "gamut.json",         "gray.png",
+                                                 "relief.gwy",         "predicted_0.exr",
+                                                 "target_0.exr",       "evaluations.jsonl"};
 
 void expect_promised_files(const Files& files) {
   for (const auto& name : promised_files) {
