@@ -242,9 +242,9 @@ Design find_design(const DesignProblem& problem, const Progress& progress) {
   design.fresh_error = target_error(mean_of(design.fresh_covariances).mean, problem.target);
   judge(goal, searched, fresh, design);
   design.held_out_ratio = held_out_ratio(goal, design.search.lowered, searched, fresh, design);
-  if (plan.seeds.size() >= 3) {
+  if (plan.seeds.size() >= 3 && fresh.size() >= 3) {
     design.intervals = parameter_intervals(goal, design.search.lowered, model, problem.pattern, design.variables,
-                                           design.search.values, problem.target_draws);
+                                           design.search.values, fresh, problem.target_draws);
   }
   trace_verdict(problem, design, progress);
   design.met = problem.by_light ? design.fresh_lobe_error && design.fresh_lobe_error->value <= problem.target.tolerance

@@ -19,7 +19,13 @@ namespace mezzotint {
 namespace {
 
 constexpr double undetermined_from = 0.25;
-constexpr double step = 0.02;  // of the combinations' units; central differences, so errors are of its square
+constexpr double least_singular = 0.02;  // of the largest: what is flatter is noise of the bins
+constexpr double step = 0.05;            // of the combinations' units; central differences, so errors are of its square
+// Bins are put together before they are compared: a pattern's points wander from bin to bin with every parameter, which
+// would count as knowledge of it.
+constexpr std::size_t coarse = 4;
+// Slopes are put right last (search_pattern), so that they decide where shape and slopes disagree.
+constexpr double weight_of_slopes = 10.0;
 
 bool is_angle(const Variable& variable) { return variable.name.ends_with("_deg"); }
 
@@ -61,17 +67,33 @@ double of_curve(Measure measure, double value, double peak) {
   return measure == Measure::Logarithm ? std::log1p(value / (0.01 * peak)) : value;
 }
 
+// Means over squares of bins.
+DirectionMap coarsened(const SmoothGrid& grid, const DirectionMap& map, DirectionMap& areas) {
+  const std::size_t width = grid.grid().width, height = grid.grid().height;
+  const std::size_t columns = (width + coarse - 1) / coarse, rows = (height + coarse - 1) / coarse;
+  DirectionMap light(columns * rows, 0.0);
+  areas.assign(light.size(), 0.0);
+  for (std::size_t k = 0; k < map.size(); ++k) {
+    const std::size_t into = k / width / coarse * columns + k % width / coarse;
+    light[into] += map[k] * grid.areas()[k];
+    areas[into] += grid.areas()[k];
+  }
+  for (std::size_t k = 0; k < light.size(); ++k) light[k] = areas[k] > 0.0 ? light[k] / areas[k] : 0.0;
+  return light;
+}
+
 void add_bins(const LobeTarget& lobes, const std::vector<DirectionMap>& maps, Measure measure, double weight,
               Residuals& r) {
   for (std::size_t light = 0; light < maps.size(); ++light) {
-    const DirectionMap& wanted = lobes.maps[light];
+    DirectionMap areas;
+    const DirectionMap shown = coarsened(lobes.grid, maps[light], areas),
+                       wanted = coarsened(lobes.grid, lobes.maps[light], areas);
     const double peak = *std::ranges::max_element(wanted);
     double whole = 0.0;
-    for (std::size_t k = 0; k < wanted.size(); ++k)
-      whole += lobes.grid.areas()[k] * std::pow(of_curve(measure, wanted[k], peak), 2);
+    for (std::size_t k = 0; k < wanted.size(); ++k) whole += areas[k] * std::pow(of_curve(measure, wanted[k], peak), 2);
     for (std::size_t k = 0; k < wanted.size(); ++k) {
-      const double root = std::sqrt(lobes.grid.areas()[k] / (whole * static_cast<double>(maps.size())));
-      r.push_back(weight * root * (of_curve(measure, maps[light][k], peak) - of_curve(measure, wanted[k], peak)));
+      const double root = std::sqrt(areas[k] / (whole * static_cast<double>(maps.size())));
+      r.push_back(weight * root * (of_curve(measure, shown[k], peak) - of_curve(measure, wanted[k], peak)));
     }
   }
 }
@@ -82,7 +104,7 @@ Residuals residuals(const DesignGoal& goal, const MeasureSum& lowered, const Slo
     const double weight = std::sqrt(term.weight);
     const bool by_moments = term.measure == Measure::Moments || term.measure == Measure::Wasserstein;
     if (term.measure == Measure::SlopeCovariance || by_moments) {
-      add_covariance(goal.covariance(shown), goal.target(), weight, r);
+      add_covariance(goal.covariance(shown), goal.target(), weight_of_slopes * weight, r);
       if (by_moments) {
         const double light = implied_slopes(*goal.lobes(), shown.maps).light,
                      wanted = implied_slopes(*goal.lobes(), goal.lobes()->maps).light;
@@ -132,49 +154,71 @@ Eigen::MatrixXd pseudo_values(const DesignGoal& goal, const MeasureSum& lowered,
   return columns.colwise() - mean;
 }
 
+double square(double value) { return value * value; }
+
+// How uncertain a linear figure of the residuals is.
+class Scatter {
+public:
+  Scatter(const DesignGoal& goal, const MeasureSum& lowered, const std::vector<SlopeModel::Shown>& searched,
+          const std::vector<SlopeModel::Shown>& fresh, double target_draws)
+      : searched_(pseudo_values(goal, lowered, searched)),
+        fresh_(pseudo_values(goal, lowered, fresh)),
+        moved_(vector_of(residuals(goal, lowered, mean_of(fresh))) -
+               vector_of(residuals(goal, lowered, mean_of(searched)))),
+        target_draws_(target_draws) {}
+
+  [[nodiscard]] double half_width_95(const Eigen::VectorXd& figure) const {
+    const auto variance = [&](const Eigen::MatrixXd& pseudo) {
+      return (figure.transpose() * pseudo).squaredNorm() / static_cast<double>(pseudo.cols() - 1);
+    };
+    const double n = static_cast<double>(searched_.cols()), n_fresh = static_cast<double>(fresh_.cols());
+    const double of_search = variance(searched_) / n, of_fresh = variance(fresh_);
+    const double t = student_95(static_cast<std::uint32_t>(std::min(n, n_fresh) - 1.0));
+    const double unexplained = std::max(0.0, square(figure.dot(moved_)) - of_search - of_fresh / n_fresh);
+    return std::sqrt(square(t) * (of_search + of_fresh / target_draws_) + square(2.0) * unexplained);
+  }
+
+private:
+  Eigen::MatrixXd searched_, fresh_;
+  Eigen::VectorXd moved_;
+  double target_draws_;
+};
+
 }  // namespace
 
 ParameterIntervals parameter_intervals(const DesignGoal& goal, const MeasureSum& lowered, const SlopeModel& model,
                                        const Pattern& pattern, const std::vector<Variable>& variables,
-                                       const std::vector<double>& values, double target_draws) {
-  require(model.draw_count() >= 3, "intervals come from the scatter of at least three draws");
-  const auto n = static_cast<double>(model.draw_count());
+                                       const std::vector<double>& values, const std::vector<SlopeModel::Shown>& fresh,
+                                       double target_draws) {
+  require(model.draw_count() >= 3 && fresh.size() >= 3, "intervals come from the scatter of at least three draws");
   const Eigen::MatrixXd j = jacobian(goal, lowered, model, pattern, variables, values);
-  const Eigen::MatrixXd scatter = pseudo_values(goal, lowered, model.draws(with_values(pattern, variables, values)));
+  const Scatter scatter(goal, lowered, model.draws(with_values(pattern, variables, values)), fresh, target_draws);
+  // All directions: fewer figures than variables leave some free.
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(j, Eigen::ComputeThinU | Eigen::ComputeFullV);
-  const double t = student_95(static_cast<std::uint32_t>(model.draw_count() - 1));
-  // The mean of n draws, and a target that is itself the mean of some.
-  const double per_draw = 1.0 / n + 1.0 / target_draws;
+  const auto count = static_cast<Eigen::Index>(variables.size());
+  const Eigen::VectorXd& singular = svd.singularValues();
 
   ParameterIntervals intervals;
-  intervals.half_widths_95.assign(variables.size(), 0.0);
-  const auto count = static_cast<Eigen::Index>(variables.size());
-  Eigen::MatrixXd determined_scores = Eigen::MatrixXd::Zero(count, scatter.cols());
+  Eigen::MatrixXd to_parameters = Eigen::MatrixXd::Zero(count, j.rows());  // of what is determined
   for (Eigen::Index k = 0; k < count; ++k) {
-    ParameterCombination combination;
-    combination.change.resize(variables.size());
-    const bool has_value = k < svd.singularValues().size() && svd.singularValues()(k) > 0.0;
-    const Eigen::VectorXd direction =
-        svd.matrixV().col(k);  // all of them: fewer figures than variables leave some free
-    for (Eigen::Index i = 0; i < count; ++i) combination.change[static_cast<std::size_t>(i)] = direction(i);
-    if (has_value) {
-      const Eigen::RowVectorXd scores = svd.matrixU().col(k).transpose() * scatter / svd.singularValues()(k);
-      combination.half_width_95 = t * std::sqrt(scores.squaredNorm() / (n - 1.0) * per_draw);
+    ParameterCombination combination{.change = std::vector<double>(variables.size(), 0.0),
+                                     .half_width_95 = std::numeric_limits<double>::infinity()};
+    for (Eigen::Index i = 0; i < count; ++i) combination.change[static_cast<std::size_t>(i)] = svd.matrixV()(i, k);
+    if (k < singular.size() && singular(k) > 0.0) {
+      const Eigen::VectorXd direction = svd.matrixU().col(k) / singular(k);
+      combination.half_width_95 = scatter.half_width_95(direction);
       combination.determined =
-          combination.half_width_95 <= undetermined_from && svd.singularValues()(k) >= 0.02 * svd.singularValues()(0);
-      if (combination.determined) determined_scores += direction * scores;
-    } else {
-      combination.half_width_95 = std::numeric_limits<double>::infinity();
-    }
-    for (std::size_t i = 0; i < variables.size(); ++i) {
-      if (!combination.determined && std::abs(combination.change[i]) > 0.1)
-        intervals.half_widths_95[i] = std::numeric_limits<double>::infinity();
+          combination.half_width_95 <= undetermined_from && singular(k) >= least_singular * singular(0);
+      if (combination.determined) to_parameters += svd.matrixV().col(k) * direction.transpose();
     }
     intervals.combinations.push_back(std::move(combination));
   }
-  for (std::size_t i = 0; i < variables.size(); ++i) {
-    const double square = determined_scores.row(static_cast<Eigen::Index>(i)).squaredNorm() / (n - 1.0) * per_draw;
-    intervals.half_widths_95[i] = std::max(intervals.half_widths_95[i], t * std::sqrt(square));
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const bool is_moved = std::ranges::any_of(intervals.combinations, [i](const ParameterCombination& c) {
+      return !c.determined && std::abs(c.change[static_cast<std::size_t>(i)]) > 0.1;
+    });
+    intervals.half_widths_95.push_back(is_moved ? std::numeric_limits<double>::infinity()
+                                                : scatter.half_width_95(to_parameters.row(i).transpose()));
   }
   return intervals;
 }

@@ -33,12 +33,14 @@ struct ParameterIntervals {
 ///          measure: slope covariance log(T^(−½) C T^(−½)); cube root, L2 and logarithm the differences of the bins;
 ///          moments and Wasserstein the slopes that the light implies, and how much there is.
 /// Null     a direction along which the figure changes too little to fix it to a quarter (25 %, 0.25 rad).
+/// @param fresh         draws at the place that was found, as printed
 /// @param target_draws  infinite for a target that is a formula
-/// @throws InvalidInput for a model of fewer than three draws.
+/// @throws InvalidInput for fewer than three draws of either kind.
 [[nodiscard]] ParameterIntervals parameter_intervals(const DesignGoal& goal, const MeasureSum& lowered,
                                                      const SlopeModel& model, const Pattern& pattern,
                                                      const std::vector<Variable>& variables,
-                                                     const std::vector<double>& values, double target_draws);
+                                                     const std::vector<double>& values,
+                                                     const std::vector<SlopeModel::Shown>& fresh, double target_draws);
 
 /// A combination in words: "height_um and wavelength_u_um together (× e^0.71, × e^0.70)".
 [[nodiscard]] std::string in_words(const ParameterCombination& combination, const std::vector<Variable>& variables);

@@ -76,8 +76,8 @@ public:
     if (is_enough(best)) return finish(best);
     const Place shaped = by_shape(best);
     if (!std::isfinite(shaped.objective)) return with_slopes_alone(best);
-    if (chooses && goal_.by_light() && !shape_fits(shaped)) return finish(by_position(shaped));
-    return finish(shaped);
+    if (!chooses || !goal_.by_light()) return finish(shaped);
+    return finish(shape_fits(shaped) ? with_exact_slopes(shaped) : by_position(shaped));
   }
 
 private:
@@ -326,6 +326,16 @@ private:
     const double residual = goal_.distance(Measure::CubeRoot, mean_of(draws));
     outcome_.shape_fits = residual <= std::pow(residual_of_a_shape, 2) + 4.0 * floor;
     return outcome_.shape_fits;
+  }
+
+  // The cube root of a noisy lobe is off to one side: the slopes are put right once more by the moments, from where the
+  // shape is found, if the shape bears it.
+  Place with_exact_slopes(const Place& shaped) {
+    if (!moments_.exists() || affordable(fine_) < 2) return shaped;
+    const Place exact = map_space("position", {shaped.values, infinity});
+    if (!std::isfinite(exact.objective) || affordable(fine_) < 1) return shaped;
+    const double objective = ask("fine", fine_, lowered_, exact.values).objective;
+    return objective <= 1.05 * shaped.objective ? Place{exact.values, objective} : shaped;
   }
 
   // Position and width alone, from the place whose shape came nearest.

@@ -154,6 +154,18 @@ double change_of(const Variable& variable, double from, double to) {
   return turned * std::numbers::pi / 180.0;
 }
 
+// Of the two descriptions of one sinusoid (wavelengths swapped, a quarter turn) that nearer to what was found.
+Pattern as_found(const Pattern& truth, const Pattern& found) {
+  const auto* sinusoid = std::get_if<Sinusoid>(&truth);
+  if (sinusoid == nullptr) return truth;
+  Sinusoid swapped = *sinusoid;
+  std::swap(swapped.wavelength_u, swapped.wavelength_v);
+  swapped.direction = swapped.direction + 90.0_deg;
+  const Angle axis = std::get<Sinusoid>(found).direction;
+  return axis_difference(axis, swapped.direction) < axis_difference(axis, sinusoid->direction) ? Pattern{swapped}
+                                                                                               : truth;
+}
+
 // Families whose parameters are all determined: the height is known.
 void intervals(int recoveries) {
   constexpr std::size_t target_draws = 4;
@@ -161,12 +173,18 @@ void intervals(int recoveries) {
     const auto known = [](const FreeParameter& p) { return p.name == "height_um" || p.name == "hurst"; };
     std::erase_if(family.free, known);
     std::erase_if(family.truth, known);
+    // Waves of 8 pixels or more: shorter ones stand where slopes hardly change with the wavelength (the blur takes what
+    // it adds), so that an interval in its first order says too little.
+    for (FreeParameter& p : family.truth) {
+      if (p.name.starts_with("wavelength")) p.low = 60.0, p.high = 200.0;
+    }
     int combinations = 0, held = 0, null_directions = 0;
     for (int k = 0; k < recoveries / 2; ++k) {
       const Pattern truth = truth_of(family, static_cast<std::uint64_t>(900 + k));
       DesignProblem problem = problem_of(family, static_cast<std::uint64_t>(k + 1));
       problem.search_draws = 8;
-      const SlopeModel showing(problem.printer, problem.patch,
+      problem.fresh_draws = 8;
+      const SlopeModel showing(problem.printer, {.pixels = family.pixels, .subsamples = 6},
                                seeds_from(600001 + 100 * static_cast<std::uint64_t>(k), target_draws),
                                LobeTarget{SmoothGrid(bins), material, lights, {}}, as_printed);
       LobeTarget lobes{SmoothGrid(bins), material, lights, showing.shown(truth).maps};
@@ -174,13 +192,14 @@ void intervals(int recoveries) {
       problem.by_light = true;
       problem.target_draws = target_draws;
       const Design design = find_design(problem);
+      const Pattern nearer = as_found(truth, design.pattern);
       for (const ParameterCombination& combination : design.intervals.combinations) {
         null_directions += combination.determined ? 0 : 1;
         if (!combination.determined) continue;
         double off = 0.0;
         for (std::size_t i = 0; i < design.variables.size(); ++i) {
           off += combination.change[i] * change_of(design.variables[i], design.search.values[i],
-                                                   get_parameter(truth, design.variables[i].name));
+                                                   get_parameter(nearer, design.variables[i].name));
         }
         ++combinations;
         held += std::abs(off) <= combination.half_width_95 ? 1 : 0;
