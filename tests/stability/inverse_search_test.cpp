@@ -113,10 +113,11 @@ TEST(Search, HandsOnAnExceptionFromUnderEveryAlgorithmAndCallsNoMore) {
   }
   test::record(
       {theme, "every algorithm of NLopt", "the objective throws at its fifth evaluation",
-       fmt::format("{} algorithms, AUGLAG and MLSL with their local searches among them: the exception comes "
-                   "through as it was thrown, no evaluation follows it, and the four before it were told (a log has them). "
-                   "(NLopt by itself says “nlopt failure”, and some go on asking.)",
-                   algorithms),
+       fmt::format(
+           "{} algorithms, AUGLAG and MLSL with their local searches among them: the exception comes "
+           "through as it was thrown, no evaluation follows it, and the four before it were told (a log has them). "
+           "(NLopt by itself says “nlopt failure”, and some go on asking.)",
+           algorithms),
        "Caught at the border of NLopt and thrown again behind it.", "—"});
 }
 
