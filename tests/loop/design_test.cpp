@@ -114,6 +114,21 @@ TEST(Design, InterruptedInAFreeFormEndsInTheSameBits) {
   expect_same_after_an_interruption(here, "design square.toml", "free_form.state");
 }
 
+TEST(Design, RefusesFreeFormsThatCannotBe) {
+  const Workplace here;
+  here.write("square.toml", square);
+  const auto refused = [&](const std::string& line) {
+    const Ending ending = here.mezzotint(words(line));
+    EXPECT_EQ(ending.status, 2) << line;
+    return ending.err;
+  };
+  EXPECT_NE(refused("run square.toml -o no").find("mezzotint design"), std::string::npos);
+  EXPECT_NE(refused("design square.toml -o no --set pattern.algorithm=LN_BOBYQA").find("LD_MMA"), std::string::npos);
+  here.write("ratio.toml", std::string("[target]\nkind = \"anisotropy\"\nratio = 2.0\nmean_alpha = 0.15\n") +
+                               "[pattern]\nkind = \"free_form\"\npixels = 32\n");
+  EXPECT_NE(refused("design ratio.toml -o no").find("an anisotropy alone names none"), std::string::npos);
+}
+
 TEST(Design, OfRegionsHasOneDesignEachAndOneLayer) {
   const Workplace here;
   std::filesystem::copy_file(std::filesystem::path(MEZZOTINT_SOURCE_DIR) / "experiments/patterns/smiley.png",
