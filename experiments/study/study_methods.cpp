@@ -124,8 +124,8 @@ const StudyStyle& style_of(const std::string& method) {
                                                         {"lobe's moments", {"#cc79a7", "diamond"}},
                                                         {"plain, cube root", {"#000000", "square"}},
                                                         {"plain, L2", {"#7f7f7f", "square"}},
-                                                        {"plain from our start, cube root", {"#000000", "circle"}},
-                                                        {"plain from our start, L2", {"#7f7f7f", "circle"}},
+                                                        {"plain, our start, cube root", {"#000000", "circle"}},
+                                                        {"plain, our start, L2", {"#7f7f7f", "circle"}},
                                                         {"plain, our tracer", {"#0072b2", "square"}},
                                                         {auto_method, {"#000000", "star"}}};
   return all.at(method);

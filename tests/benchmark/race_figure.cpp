@@ -34,8 +34,8 @@ std::optional<Drawn> drawn(const std::string& method) {
       {slopes_alone + ":objective=moments", {"lobe's moments", 0}},
       {plain + "cube_root:rays=1e5:start=centre", {"plain, cube root", 0}},
       {plain + "l2:rays=1e5:start=centre", {"plain, L2", 0}},
-      {plain + "cube_root:rays=1e5:start=closed", {"plain from our start, cube root", 0}},
-      {plain + "l2:rays=1e5:start=closed", {"plain from our start, L2", 0}},
+      {plain + "cube_root:rays=1e5:start=closed", {"plain, our start, cube root", 0}},
+      {plain + "l2:rays=1e5:start=closed", {"plain, our start, L2", 0}},
       {plain + "cube_root:rays=1e5:start=centre:tracer=own", {"plain, our tracer", 0}}};
   const auto found = all.find(method);
   return found == all.end() ? std::nullopt : std::optional<Drawn>(found->second);
@@ -53,8 +53,8 @@ const std::vector<std::string>& marks() {
                                                "lobe's moments",
                                                "plain, cube root",
                                                "plain, L2",
-                                               "plain from our start, cube root",
-                                               "plain from our start, L2",
+                                               "plain, our start, cube root",
+                                               "plain, our start, L2",
                                                "plain, our tracer"};
   return all;
 }
