@@ -11,9 +11,7 @@ namespace {
 BlurredPrint blurred(const DesignProblem& problem, const Design& design, const DesignGoal& goal, double factor) {
   PrinterProfile printer = problem.printer;
   printer.spread.width = factor * printer.spread.width;
-  const SlopeModel model(printer, problem.patch, design.fresh_seeds, problem.lobes,
-                         {.levels = GrayLevels::Quantized, .drawn_ground = true, .place_x = 0.23, .place_y = 0.71});
-  const auto draws = model.draws(design.pattern);
+  const auto draws = fresh_model(problem, printer, design.fresh_seeds).draws(design.pattern);
   std::vector<SlopeCovariance> covariances;
   covariances.reserve(draws.size());
   for (const SlopeModel::Shown& draw : draws) covariances.push_back(draw.covariance);

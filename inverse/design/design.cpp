@@ -123,17 +123,6 @@ std::uint64_t closest_draw(const DesignProblem& problem, const Design& design) {
   return design.fresh_seeds[best];
 }
 
-// Draws that no search has met: finer samples at other places, the printer's levels, a ground of their own.
-SlopeModel fresh_model(const DesignProblem& problem, const std::vector<std::uint64_t>& seeds) {
-  PatchOptions patch = problem.patch;
-  patch.subsamples = std::min<std::size_t>(16, 2 * patch.subsamples);
-  return {problem.printer,
-          patch,
-          seeds,
-          problem.lobes,
-          {.levels = GrayLevels::Quantized, .drawn_ground = true, .place_x = 0.23, .place_y = 0.71}};
-}
-
 std::vector<std::vector<DirectionMap>> maps_of(const std::vector<SlopeModel::Shown>& draws) {
   std::vector<std::vector<DirectionMap>> maps;
   maps.reserve(draws.size());
@@ -202,6 +191,17 @@ SearchPlan plan_of(const DesignProblem& problem) {
 
 }  // namespace
 
+SlopeModel fresh_model(const DesignProblem& problem, const PrinterProfile& printer,
+                       const std::vector<std::uint64_t>& seeds) {
+  PatchOptions patch = problem.patch;
+  patch.subsamples = std::min<std::size_t>(16, 2 * patch.subsamples);
+  return {printer,
+          patch,
+          seeds,
+          problem.lobes,
+          {.levels = GrayLevels::Quantized, .drawn_ground = true, .place_x = 0.23, .place_y = 0.71}};
+}
+
 std::vector<std::uint64_t> search_seeds(const DesignProblem& problem) {
   require(problem.search_draws >= 1 && problem.search_draws <= 256, "a search takes 1 to 256 draws");
   return consecutive_seeds(problem.search.seed * seed_stride, problem.search_draws);
@@ -237,7 +237,7 @@ Design find_design(const DesignProblem& problem, const Progress& progress) {
   const auto searched = model.draws(design.pattern);
   design.on_search_draws = estimate_axes(covariances_of(searched));
   design.fresh_seeds = fresh_seeds(problem);
-  const auto fresh = fresh_model(problem, design.fresh_seeds).draws(design.pattern);
+  const auto fresh = fresh_model(problem, problem.printer, design.fresh_seeds).draws(design.pattern);
   design.fresh_covariances = covariances_of(fresh);
   design.on_fresh_draws = estimate_axes(design.fresh_covariances);
   design.print_seed = closest_draw(problem, design);

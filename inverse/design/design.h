@@ -73,6 +73,11 @@ struct Design {
 ///         `progress` throws. With a log it can go on then.
 [[nodiscard]] Design find_design(const DesignProblem& problem, const Progress& progress = {});
 
+/// Draws of a problem's patch as they are printed, for verdicts: finer samples at other places than the search's, the
+/// printer's levels, a ground of their own.
+[[nodiscard]] SlopeModel fresh_model(const DesignProblem& problem, const PrinterProfile& printer,
+                                     const std::vector<std::uint64_t>& seeds);
+
 /// The problem's variables with their starts.
 [[nodiscard]] std::vector<Variable> search_variables(const DesignProblem& problem);
 

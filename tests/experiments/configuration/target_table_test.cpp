@@ -151,10 +151,13 @@ TEST_F(TargetTable, LobesAreSearchedForAsLobes) {
     return read_experiment(folder_ / "run.toml");
   };
   const std::string ggx = "[target]\nkind = \"ggx\"\nalpha_x = 0.3\nalpha_y = 0.1\n";
-  EXPECT_EQ(experiment(ggx).objective, SearchObjective::LobeCubeRoot);
+  EXPECT_TRUE(is_lobe_alone(experiment(ggx).target));
+  EXPECT_TRUE(experiment(ggx).search.objective.empty()) << "the search chooses";
   EXPECT_FALSE(experiment(ggx).simulation.incidences_given);
   EXPECT_TRUE(experiment(ggx + "[simulation]\nincidence_deg = [[10, 0]]\n").simulation.incidences_given);
-  EXPECT_THROW((void)experiment(ggx + "[search]\nobjective = \"slope_covariance\"\n"), ConfigurationError);
+  EXPECT_THROW((void)experiment(ggx + "[search]\nobjective = \"cube_rot\"\n"), ConfigurationError);
+  EXPECT_TRUE(experiment(ggx + "[search]\nobjective = { cube_root = 1.0, moments = 0.5 }\n").search.by_light());
+  EXPECT_THROW((void)experiment(ggx + "[search]\nobjective = { moments = 0.0 }\n"), ConfigurationError);
 }
 
 }  // namespace
