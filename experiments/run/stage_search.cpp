@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -12,10 +13,20 @@
 #include "experiments/run/target_lobes.h"
 #include "experiments/run/target_maps.h"
 #include "forward/base/file_output.h"
+#include "measurement/formats/surface_file.h"
 
 namespace mezzotint {
 
 namespace {
+
+// A scan is one draw of its own size.
+double draws_of_target(const StageContext& context, const Target& target) {
+  if (target.kind != "scan") return HUGE_VAL;
+  const Grid scan = read_gwy(context.folder / "target.gwy").field.grid();
+  const PatchOptions& patch = context.experiment.patch;
+  const double side = static_cast<double>(patch.pixels) * context.experiment.printer.pixel_pitch.um();
+  return static_cast<double>(scan.size()) * scan.pitch_x.um() * scan.pitch_y.um() / (side * side);
+}
 
 DesignProblem problem_of(const StageContext& context, const Target& target) {
   const Experiment& experiment = context.experiment;
@@ -31,6 +42,7 @@ DesignProblem problem_of(const StageContext& context, const Target& target) {
           .lobes = target_lobes(experiment, context.folder, target),
           .by_light = is_by_light(experiment),
           .traced = experiment.search.traced,
+          .target_draws = draws_of_target(context, target),
           .log = context.folder / "evaluations.jsonl",
           .log_digest = experiment_digest(experiment)};
 }
@@ -91,6 +103,10 @@ nlohmann::ordered_json answer_to_json(const StageContext& context, const DesignP
 std::vector<std::string> search_pattern_design(const StageContext& context, const Target& target) {
   const DesignProblem problem = problem_of(context, target);
   Design design = find_design(problem, context.progress);
+  if (is_lobe_alone(context.experiment.target)) {
+    const TargetMaps maps = wanted_maps(context.experiment.target, context.experiment.simulation);
+    design.warnings.insert(design.warnings.begin(), maps.notes.begin(), maps.notes.end());
+  }
   const LobeTarget goal = shown_goal(context.experiment, problem, design);
   std::vector<std::string> outputs =
       write_lobes(context, goal, traced_prediction(problem, design, goal, context.progress));

@@ -102,12 +102,12 @@ void warn_of_bounds(Design& design) {
   }
 }
 
-void warn_of_overfit(Design& design) {
-  if (design.held_out_ratio <= most_held_out_ratio) return;
+// What is met is met on fresh draws, however well the search's own may look.
+void warn_of_overfit(const Target& target, Design& design) {
+  if (design.held_out_ratio <= most_held_out_ratio || (is_judged(target) && design.met)) return;
   design.warnings.push_back(
       fmt::format("on draws that the search has not seen the error is {:.2g} times that on its own: it fitted its "
-                  "draws; give it more "
-                  "draws or a larger patch",
+                  "draws; give it more draws or a larger patch",
                   design.held_out_ratio));
 }
 
@@ -133,7 +133,9 @@ std::vector<std::vector<DirectionMap>> maps_of(const std::vector<SlopeModel::Sho
 // Of roots, each with what its draws' own scatter gives added to the search's: a search without error has no ratio.
 double held_out_ratio(const DesignGoal& goal, const MeasureSum& lowered, const std::vector<SlopeModel::Shown>& searched,
                       const std::vector<SlopeModel::Shown>& fresh, const Design& design) {
-  const double trained = goal.distance(lowered, mean_of(searched)), held_out = goal.distance(lowered, mean_of(fresh));
+  // A search for slopes sees its draws brought to the mean over all of them: its own figure is the trained one.
+  const double seen = goal.distance(lowered, mean_of(searched)), held_out = goal.distance(lowered, mean_of(fresh)),
+               trained = goal.by_light() ? seen : std::min(seen, design.search.objective);
   double noise = 0.0;
   for (const WeightedMeasure& term : lowered) {
     const auto kind = lobe_distance_of(term.measure);
@@ -255,7 +257,7 @@ Design find_design(const DesignProblem& problem, const Progress& progress) {
   warn_of_levels(problem, design);
   warn_of_lobes(problem, design);
   warn_of_bounds(design);
-  warn_of_overfit(design);
+  warn_of_overfit(problem.target, design);
   return design;
 }
 

@@ -20,6 +20,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // A shape counts as within reach where the cube-root residual is below this, or explained by the draws' own noise.
 // Reachable lobes end at .02 to .03, unreachable ones above .1 (shared measurements of all families).
 constexpr double residual_of_a_shape = 0.06;
+// Nothing is gained by other starts from here on.
+constexpr double residual_of_a_good_shape = 0.03;
 constexpr int coarse_evaluations_per_variable = 12, fine_evaluations_per_variable = 15;
 
 bool is_global(const std::string& algorithm) { return algorithm.starts_with("G"); }
@@ -76,7 +78,7 @@ public:
     if (is_enough(best)) return finish(best);
     const Place shaped = by_shape(best);
     if (!std::isfinite(shaped.objective)) return with_slopes_alone(best);
-    if (!chooses || !goal_.by_light()) return finish(shaped);
+    if (!asks_for_shape()) return finish(shaped);
     return finish(shape_fits(shaped) ? with_exact_slopes(shaped) : by_position(shaped));
   }
 
@@ -234,19 +236,35 @@ private:
 
   // ---- rungs 2 and 3: scan, local searches
 
+  // Another round of starts only where the first ends at a shape that does not fit: a pattern of several waves has
+  // several valleys.
   Place by_shape(const Place& position) {
-    std::vector<Place> places = scan(position);
-    const std::size_t count = std::min(plan_.starts, places.size());
+    const std::vector<Place> places = scan(position);
+    const int most = fine_evaluations_per_variable * static_cast<int>(variables_.size());
     Place best{position.values, infinity};
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t first = 0; first < std::min(2 * plan_.starts, places.size()); first += plan_.starts) {
+      const Place coarse = best_of_starts(places, first);
+      if (first > 0 && !std::isfinite(coarse.objective)) break;
+      const Place fine = search_from("fine", fine_, coarse, 0.3 * plan_.search.initial_step, most);
+      if (fine.objective < best.objective) best = fine;
+      if (!asks_for_shape() || !std::isfinite(best.objective) || shape_fits(best)) break;
+    }
+    return best;
+  }
+
+  Place best_of_starts(const std::vector<Place>& places, std::size_t first) {
+    Place best{places[first].values, infinity};
+    for (std::size_t i = first; i < std::min(first + plan_.starts, places.size()); ++i) {
       const int most = coarse_evaluations_per_variable * static_cast<int>(variables_.size());
       const Place found =
           search_from(fmt::format("coarse {}", i + 1), coarse_, places[i], plan_.search.initial_step, most);
       if (found.objective < best.objective) best = found;
+      if (asks_for_shape() && best.objective <= std::pow(residual_of_a_good_shape, 2)) break;
     }
-    const int most = fine_evaluations_per_variable * static_cast<int>(variables_.size());
-    return search_from("fine", fine_, best, 0.3 * plan_.search.initial_step, most);
+    return best;
   }
+
+  [[nodiscard]] bool asks_for_shape() const { return plan_.objective.empty() && goal_.by_light(); }
 
   // The best places first.
   std::vector<Place> scan(const Place& position) {
