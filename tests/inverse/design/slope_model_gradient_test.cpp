@@ -89,22 +89,22 @@ struct Around {
   }
 };
 
-// The gradients' errors relative to their size, each number counting by its step; the sliced Wasserstein distance may
-// have ten times as much: its second derivatives jump where light passes from bin to bin, which differences feel.
+// The gradients' errors relative to their size, each number counting by its step. The second derivatives of the sliced
+// Wasserstein distance jump where light passes from bin to bin, so that the differences' own error falls with the step
+// alone (1.4e-3, 7.6e-4, 3.7e-4 of three halvings): a quarter of the step for it, and ten times the tolerance.
 void expect_gradients(const SlopeModel& model, const Case& at, double tolerance) {
-  std::vector<Around> around;
-  for (std::size_t k = 0; k < at.names.size(); ++k) around.emplace_back(model, at.pattern, at.names[k], at.steps[k]);
   for (const auto& [name, figure] : all_figures()) {
+    const bool jumps = name == "sliced_wasserstein";
     std::vector<double> slopes, off, size;
     const double value = model.figure_with_slopes(at.pattern, at.names, figure, slopes);
     SlopeModel::Shown shown = model.shown(at.pattern), unused = shown;
     EXPECT_EQ(value, figure(shown, unused)) << "other bits";
     for (std::size_t k = 0; k < at.names.size(); ++k) {
-      size.push_back(around[k].change(figure));
-      off.push_back(slopes[k] * at.steps[k] - size.back());
+      const double step = jumps ? 0.25 * at.steps[k] : at.steps[k];
+      size.push_back(Around(model, at.pattern, at.names[k], step).change(figure));
+      off.push_back(slopes[k] * step - size.back());
     }
-    const double bound = tolerance * (name == "sliced_wasserstein" ? 10.0 : 1.0);
-    EXPECT_LT(size_of(off), bound * size_of(size)) << kind_name(at.pattern) << " " << name;
+    EXPECT_LT(size_of(off), (jumps ? 10.0 : 1.0) * tolerance * size_of(size)) << kind_name(at.pattern) << " " << name;
   }
 }
 
