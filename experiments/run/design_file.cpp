@@ -229,10 +229,11 @@ std::string verdict_sentence(const Target& target, const Design& design) {
   const char* verdict = !is_judged(target) ? "No tolerance stated" : design.met ? "Target met" : "Target missed";
   const std::size_t draws = design.fresh_covariances.size();
   if (design.fresh_lobe_error) {
+    const std::size_t seen = design.traced ? design.traced->seeds.size() : draws;
     const std::string allowed = is_judged(target) ? fmt::format(" ({:.3g} allowed)", target.tolerance) : "";
     return fmt::format(
         "{}: on {} draws that the search never saw, the printed lobe's cube-root error is {:.3f} ± {:.3f}{}.", verdict,
-        draws, design.fresh_lobe_error->value, design.fresh_lobe_error->standard_error, allowed);
+        seen, design.fresh_lobe_error->value, design.fresh_lobe_error->standard_error, allowed);
   }
   const TargetError& error = design.fresh_error;
   const std::string axis = target.rotation_matters

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "forward/base/error.h"
+#include "forward/pattern/octave_sum.h"
 
 namespace mezzotint {
 
@@ -38,18 +39,23 @@ double difference(const float* at, std::size_t stride) {
   return sum;
 }
 
+// Noise of cells of six samples or more: its waves are some eight samples long, whose slopes differences have to 0.2 %.
+constexpr double least_samples = 6.0;
+
 template <typename Kind>
-bool is_smooth(const Kind&) {
-  return std::is_same_v<Kind, Noise> || std::is_same_v<Kind, FractionalBrownianMotion> ||
-         std::is_same_v<Kind, Sinusoid>;
+bool is_smooth(const Kind& kind, Length pitch) {
+  if constexpr (std::is_same_v<Kind, Noise> || std::is_same_v<Kind, FractionalBrownianMotion>) {
+    return kind.scale / octave_sum(kind).octaves.back().frequency >= least_samples * pitch;
+  }
+  return false;
 }
-bool are_smooth(const std::vector<PatternPart>& parts) {
-  return std::ranges::all_of(parts, [](const PatternPart& part) {
-    return std::visit([](const auto& kind) { return is_smooth(kind); }, part.pattern);
+bool are_smooth(const std::vector<PatternPart>& parts, Length pitch) {
+  return std::ranges::all_of(parts, [pitch](const PatternPart& part) {
+    return std::visit([pitch](const auto& kind) { return is_smooth(kind, pitch); }, part.pattern);
   });
 }
-bool is_smooth(const PatternSum& sum) { return are_smooth(sum.parts); }
-bool is_smooth(const TurnedPattern& turned) { return are_smooth(turned.parts); }
+bool is_smooth(const PatternSum& sum, Length pitch) { return are_smooth(sum.parts, pitch); }
+bool is_smooth(const TurnedPattern& turned, Length pitch) { return are_smooth(turned.parts, pitch); }
 
 }  // namespace
 
@@ -72,8 +78,8 @@ SlopeCovariance point_slope_covariance(const HeightField& heights) {
   return {xx / n - x * x / (n * n), yy / n - y * y / (n * n), xy / n - x * y / (n * n)};
 }
 
-std::optional<SlopeCovariance> smooth_expectation(const Pattern& pattern) {
-  const bool smooth = std::visit([](const auto& kind) { return is_smooth(kind); }, pattern);
+std::optional<SlopeCovariance> smooth_expectation(const Pattern& pattern, Length pitch) {
+  const bool smooth = std::visit([pitch](const auto& kind) { return is_smooth(kind, pitch); }, pattern);
   return smooth ? closed_form_slope_covariance(pattern) : std::nullopt;
 }
 

@@ -12,9 +12,10 @@ namespace mezzotint {
 /// @throws InvalidInput for a field of fewer than 16 samples a side.
 [[nodiscard]] SlopeCovariance point_slope_covariance(const HeightField& heights);
 
-/// The covariance that a pattern's slopes have in the mean over all its draws, before printing; none for a pattern that
-/// is not smooth (ridges, turbulence) or has no closed form that is exact (line integral convolution).
-[[nodiscard]] std::optional<SlopeCovariance> smooth_expectation(const Pattern& pattern);
+/// The covariance that a noise's slopes have in the mean over all its draws, before printing: of noise, fBm, and sums
+/// and turns of them, where `pitch` samples them well. None for what is not smooth (ridges, turbulence), has no closed
+/// form that is exact (line integral convolution), or no randomness that draws could be off by (waves).
+[[nodiscard]] std::optional<SlopeCovariance> smooth_expectation(const Pattern& pattern, Length pitch);
 
 /// The symmetric B of to = B·from·B.
 [[nodiscard]] SlopeCovariance symmetric_factor(const SlopeCovariance& from, const SlopeCovariance& to);

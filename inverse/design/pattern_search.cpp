@@ -56,6 +56,7 @@ public:
       : goal_(goal),
         pattern_(pattern),
         variables_(variables),
+        pitch_(printer.pixel_pitch),
         plan_(plan),
         log_(log),
         progress_(progress),
@@ -95,7 +96,7 @@ private:
 
   // The slopes that the light implies can be freed of what the draws are off by; moments of the light have derivatives.
   [[nodiscard]] MeasureSum shape_and_width() const {
-    const bool random = smooth_expectation(pattern_).has_value() && !wants_slopes();
+    const bool random = smooth_expectation(pattern_, pitch_).has_value() && !wants_slopes();
     return {{Measure::CubeRoot, 1.0}, {random ? Measure::SlopeCovariance : Measure::Moments, 1.0}};
   }
 
@@ -303,6 +304,8 @@ private:
     MinimizeOptions options = plan_.search;
     options.max_evaluations = budget;
     options.initial_step = step;
+    // Where the last figures are decided: a thousandth of half a turn is a fifth of a degree.
+    if (level.cost == 1.0) options.relative_tolerance *= 0.2;
     if (lowered_.size() == 1 && lowered_.front().measure == Measure::SlopeCovariance)
       options.good_enough = slopes_good_enough();
     try {
@@ -342,6 +345,7 @@ private:
     const double floor =
         draws.size() < 4 ? 0.0 : judge_draws(maps, *goal_.lobes()).by(LobeDistance::CubeRoot).floor.value;
     const double residual = goal_.distance(Measure::CubeRoot, mean_of(draws));
+    outcome_.at_noise_floor = residual <= 2.0 * floor;
     outcome_.shape_fits = residual <= std::pow(residual_of_a_shape, 2) + 4.0 * floor;
     return outcome_.shape_fits;
   }
@@ -447,6 +451,7 @@ private:
   const DesignGoal& goal_;
   const Pattern& pattern_;
   const std::vector<Variable>& variables_;
+  Length pitch_;
   const SearchPlan& plan_;
   EvaluationLog* log_;
   const Progress& progress_;

@@ -40,8 +40,9 @@ struct SearchOutcome {
   double cost = 0.0;       ///< in evaluations on all draws
   bool converged = false;  ///< false: the budget was used up
   std::string outcome;     ///< why it ended, in words
-  bool shape_fits =
-      true;  ///< the lobe's shape was found to be within the pattern's reach; true where none was asked for
+  /// The lobe's shape was found to be within the pattern's reach; true where none was asked for.
+  bool shape_fits = true;
+  bool at_noise_floor = false;  ///< what is left of the shape is what the draws' own scatter gives
   std::vector<std::string> warnings;
 };
 

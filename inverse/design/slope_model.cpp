@@ -113,7 +113,8 @@ std::vector<SlopeModel::Shown> SlopeModel::draws(const Pattern& pattern) const {
 }
 
 SlopeModel::Shown SlopeModel::shown(const Pattern& pattern) const {
-  const auto before_printing = options_.to_expectation ? smooth_expectation(pattern) : std::nullopt;
+  const auto before_printing =
+      options_.to_expectation ? smooth_expectation(pattern, printer_.pixel_pitch) : std::nullopt;
   return before_printing ? expected(pattern, *before_printing) : mean_of(draws(pattern));
 }
 

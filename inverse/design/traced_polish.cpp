@@ -34,7 +34,8 @@ public:
   }
 
   void run() {
-    const int corrections = outcome_.shape_fits ? traced_.corrections : 0;
+    // Out of reach, or lost in the draws' scatter: a correction would follow noise.
+    const int corrections = outcome_.shape_fits && !outcome_.at_noise_floor ? traced_.corrections : 0;
     if (corrections == 0 && traced_.evaluations == 0) return;
     outcome_.objective = asked("traced", outcome_.values);
     for (int step = 0; step < corrections; ++step) {

@@ -27,7 +27,8 @@ struct TracedPlan {
 ///
 /// Correction  the goal's maps plus what slopes show more than tracing does at the place found: a search by slopes for
 ///             that ends where tracing shows the goal. Kept where it is better as traced. None where the shape is out
-///             of the pattern's reach: what is searched for then is the slopes alone, and the shape would get worse.
+///             of reach, or what is left is the draws' own scatter. None where the shape is out of the pattern's reach:
+///             what is searched for then is the slopes alone, and the shape would get worse.
 /// Polish      a short search on traced light, with common random numbers in pattern, ground and paths.
 /// @param outcome  of search_pattern on a goal by its light; its values, objective (as traced), history and cost are
 ///                 changed. A traced evaluation costs as many of the slope model's as its time says (`traced_cost`).
