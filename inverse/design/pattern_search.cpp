@@ -357,7 +357,7 @@ private:
     const Place exact = map_space("position", {shaped.values, infinity});
     if (!std::isfinite(exact.objective) || affordable(fine_) < 1) return shaped;
     const double objective = ask("fine", fine_, lowered_, exact.values).objective;
-    return objective <= 1.05 * shaped.objective ? Place{exact.values, objective} : shaped;
+    return objective <= 1.3 * shaped.objective ? Place{exact.values, objective} : shaped;
   }
 
   // Position and width alone, from the place whose shape came nearest.
