@@ -36,16 +36,6 @@ HeightField lifted_heights(const PatternInstance& instance, const PrinterProfile
   return heights;
 }
 
-// The parts of a composition have no shifts of their own: the whole is moved.
-PatternInstance drawn(const Pattern& pattern, std::uint64_t seed) {
-  PatternInstance instance = draw_instance(pattern, seed);
-  if (parts_of(pattern) != nullptr) {
-    const PatternInstance shift = draw_instance(Sinusoid{}, seed);
-    instance.origin = {instance.origin.x + 3.7 * shift.origin.x, instance.origin.y + 3.7 * shift.origin.y};
-  }
-  return instance;
-}
-
 // A square without a counterpart in the heights (across ridges) stands for itself.
 double per_height(double printed, double unprinted, double expected) {
   return expected > 0.0 && unprinted > 0.0 ? printed * (expected / unprinted) : printed;
@@ -62,7 +52,8 @@ SlopePrint::SlopePrint(const PrinterProfile& printer, const SlopePatch& patch)
 }
 
 SlopePrint::Draw SlopePrint::draw(const Pattern& pattern, std::size_t index) const {
-  const HeightField heights = lifted_heights(drawn(pattern, patch_.seed * 1000 + index), printer_, patch_.pixels);
+  const HeightField heights =
+      lifted_heights(draw_instance(pattern, patch_.seed * 1000 + index), printer_, patch_.pixels);
   return {covariance(process_.slopes(expose(heights, printer_).image)), slope_covariance(heights)};
 }
 
