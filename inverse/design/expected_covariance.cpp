@@ -7,6 +7,7 @@
 
 #include "forward/base/error.h"
 #include "forward/pattern/octave_sum.h"
+#include "inverse/target/covariance_matrix.h"
 
 namespace mezzotint {
 
@@ -17,11 +18,6 @@ constexpr std::size_t reach = 3;
 // Coefficients of f(+1) − f(−1), f(+2) − f(−2), f(+3) − f(−3). Source: Fornberg, Math. Comp. 51 (1988).
 constexpr std::array<double, reach> weights = {45.0 / 60.0, -9.0 / 60.0, 1.0 / 60.0};
 
-Eigen::Matrix2d matrix_of(const SlopeCovariance& c) {
-  Eigen::Matrix2d matrix;
-  matrix << c.xx, c.xy, c.xy, c.yy;
-  return matrix;
-}
 SlopeCovariance covariance_of_matrix(const Eigen::Matrix2d& m) { return {m(0, 0), m(1, 1), 0.5 * (m(0, 1) + m(1, 0))}; }
 
 Eigen::Matrix2d power(const Eigen::Matrix2d& matrix, double exponent) {

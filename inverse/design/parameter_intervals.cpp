@@ -12,6 +12,7 @@
 #include "forward/base/error.h"
 #include "forward/scattering/bin_interval.h"
 #include "inverse/design/design_variables.h"
+#include "inverse/target/covariance_matrix.h"
 #include "inverse/target/implied_slopes.h"
 
 namespace mezzotint {
@@ -32,12 +33,6 @@ bool is_angle(const Variable& variable) { return variable.name.ends_with("_deg")
 double moved(const Variable& variable, double value, double change) {
   if (variable.logarithmic) return value * std::exp(change);
   return value + (is_angle(variable) ? change * 180.0 / std::numbers::pi : change);
-}
-
-Eigen::Matrix2d matrix_of(const SlopeCovariance& c) {
-  Eigen::Matrix2d matrix;
-  matrix << c.xx, c.xy, c.xy, c.yy;
-  return matrix;
 }
 
 template <typename Function>

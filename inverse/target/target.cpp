@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "forward/base/error.h"
+#include "inverse/target/covariance_matrix.h"
 
 namespace mezzotint {
 
@@ -26,12 +27,6 @@ Target target_of(std::string kind, double alpha_x, double alpha_y, Angle rotatio
   return {.kind = std::move(kind),
           .slopes = {alpha_x * to_slope, alpha_y * to_slope, rotation},
           .rotation_matters = rotation_matters};
-}
-
-Eigen::Matrix2d matrix_of(const SlopeCovariance& covariance) {
-  Eigen::Matrix2d matrix;
-  matrix << covariance.xx, covariance.xy, covariance.xy, covariance.yy;
-  return matrix;
 }
 
 double square(double value) { return value * value; }
