@@ -16,6 +16,7 @@
 #include "experiments/configuration/suggestion.h"
 #include "experiments/sweep/ranks.h"
 #include "experiments/version.h"
+#include "forward/base/freed_memory.h"
 #include "forward/base/progress_display.h"
 
 namespace mezzotint {
@@ -156,6 +157,7 @@ void CommandContext::warn(const std::vector<std::string>& sentences) const {
 }  // namespace mezzotint
 
 int main(int count, char** arguments) {
+  mezzotint::keep_freed_memory();
   std::signal(SIGINT, mezzotint::ask_to_stop);
   std::signal(SIGTERM, mezzotint::ask_to_stop);
   spdlog::set_default_logger(spdlog::stderr_color_mt("mezzotint"));

@@ -188,10 +188,10 @@ std::vector<float> PrintProcess::gray_slopes(const GrayImage& image, const Relie
   return gray_slopes(printed_slopes(image), toward);
 }
 
-std::vector<float> wanted_height_slopes(const HeightField& pixel_heights, const PrinterProfile& profile,
-                                        std::span<const float> gray_slopes) {
-  const GrayImage gray = expose(pixel_heights, profile).image;
-  require(gray_slopes.size() == gray.values.size(), "one slope a pixel is needed");
+std::vector<float> wanted_height_slopes(const HeightField& pixel_heights, const GrayImage& gray,
+                                        const PrinterProfile& profile, std::span<const float> gray_slopes) {
+  require(gray_slopes.size() == gray.values.size() && gray.values.size() == pixel_heights.heights_um().size(),
+          "one gray value and one slope a pixel is needed");
   const double reachable_um = reachable_height(profile).um();
   std::vector<float> slopes(gray_slopes.size());
   for (std::size_t i = 0; i < slopes.size(); ++i) {

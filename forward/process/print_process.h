@@ -68,8 +68,10 @@ private:
 
 /// ∂J/∂(wanted height), one a pixel in 1/µm, from ∂J/∂(gray value): through `expose`. 0 where a pixel asks for nothing,
 /// or for more than the printer reaches.
-/// @throws InvalidInput as `expose`, or for another number of slopes.
-[[nodiscard]] std::vector<float> wanted_height_slopes(const HeightField& pixel_heights, const PrinterProfile& profile,
+/// @param gray  what `expose` makes of the heights
+/// @throws InvalidInput for heights, gray values and slopes of different numbers.
+[[nodiscard]] std::vector<float> wanted_height_slopes(const HeightField& pixel_heights, const GrayImage& gray,
+                                                      const PrinterProfile& profile,
                                                       std::span<const float> gray_slopes);
 
 }  // namespace mezzotint

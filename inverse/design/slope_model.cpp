@@ -1,10 +1,8 @@
 #include "inverse/design/slope_model.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
-#include <numeric>
 
 #include <tbb/parallel_for.h>
 
@@ -19,38 +17,6 @@ const PatchOptions& checked(const PatchOptions& patch, const std::vector<std::ui
   require(patch.pixels >= 16 && patch.pixels <= 4096, "a patch has 16 to 4096 pixels a side");
   require(!seeds.empty(), "a search needs at least one draw of the pattern");
   return patch;
-}
-
-// Sums of slopes and of their products, some at a time: each has sums of its own, so that none waits for another.
-struct SlopeSums {
-  static constexpr std::size_t lanes = 8;
-  using Lanes = std::array<double, lanes>;
-  Lanes x{}, y{}, xx{}, yy{}, xy{};
-
-  void add(const float* slopes_x, const float* slopes_y, std::size_t count) {
-    for (std::size_t k = 0; k < count; ++k) {
-      const double p = slopes_x[k], q = slopes_y[k];
-      x[k] += p;
-      y[k] += q;
-      xx[k] += p * p;
-      yy[k] += q * q;
-      xy[k] += p * q;
-    }
-  }
-  static double total(const Lanes& sums) { return std::accumulate(sums.begin(), sums.end(), 0.0); }
-};
-
-SlopeCovariance covariance_about_mean(const ReliefSlopes& slopes) {
-  SlopeSums sums;
-  const std::size_t points = slopes.x.size();
-  std::size_t i = 0;
-  for (; i + SlopeSums::lanes <= points; i += SlopeSums::lanes)
-    sums.add(slopes.x.data() + i, slopes.y.data() + i, SlopeSums::lanes);
-  sums.add(slopes.x.data() + i, slopes.y.data() + i, points - i);
-  const auto n = static_cast<double>(points);
-  const double x = SlopeSums::total(sums.x) / n, y = SlopeSums::total(sums.y) / n;
-  return {SlopeSums::total(sums.xx) / n - x * x, SlopeSums::total(sums.yy) / n - y * y,
-          SlopeSums::total(sums.xy) / n - x * y};
 }
 
 }  // namespace
@@ -94,8 +60,8 @@ ReliefSlopes SlopeModel::printed_slopes(const HeightField& heights, std::uint64_
   return slopes;
 }
 
-SlopeModel::Shown SlopeModel::shown_by(const ReliefSlopes& slopes) const {
-  Shown shown{covariance_about_mean(slopes), {}};
+SlopeModel::Shown SlopeModel::shown_by(const ReliefSlopes& slopes, const SlopeMoments& moments) const {
+  Shown shown{moments.covariance, {}};
   shown.covariance.xx += mean_ground_ * mean_ground_;
   shown.covariance.yy += mean_ground_ * mean_ground_;
   for (std::size_t light = 0; light < lobes_.size(); ++light)
@@ -107,7 +73,8 @@ std::vector<SlopeModel::Shown> SlopeModel::draws(const Pattern& pattern) const {
   std::vector<Shown> draws(seeds_.size());
   tbb::parallel_for(std::size_t{0}, seeds_.size(), [&](std::size_t i) {
     const HeightField heights = pixel_heights(draw_instance(pattern, seeds_[i]), printer_, patch_.pixels);
-    draws[i] = shown_by(printed_slopes(heights, seeds_[i]));
+    const ReliefSlopes slopes = printed_slopes(heights, seeds_[i]);
+    draws[i] = shown_by(slopes, slope_moments(slopes));
   });
   return draws;
 }
@@ -122,7 +89,8 @@ SlopeModel::Shown SlopeModel::expected(const Pattern& pattern, const SlopeCovari
   std::vector<Shown> draws(seeds_.size()), unprinted(seeds_.size());
   tbb::parallel_for(std::size_t{0}, seeds_.size(), [&](std::size_t i) {
     const HeightField heights = pixel_heights(draw_instance(pattern, seeds_[i]), printer_, patch_.pixels);
-    draws[i] = shown_by(printed_slopes(heights, seeds_[i]));
+    const ReliefSlopes slopes = printed_slopes(heights, seeds_[i]);
+    draws[i] = shown_by(slopes, slope_moments(slopes));
     unprinted[i].covariance = point_slope_covariance(heights);
   });
   Shown mean = mean_of(draws);

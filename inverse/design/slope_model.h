@@ -10,6 +10,7 @@
 #include "forward/pattern/pattern.h"
 #include "forward/process/print_process.h"
 #include "inverse/design/printed_texture.h"
+#include "inverse/design/slope_moments.h"
 #include "inverse/objective/smooth_lobe.h"
 #include "inverse/search/minimize.h"
 #include "inverse/target/lobe_target.h"
@@ -72,8 +73,9 @@ public:
 private:
   [[nodiscard]] ReliefSlopes printed_slopes(const HeightField& heights, std::uint64_t seed) const;
   [[nodiscard]] Shown expected(const Pattern& pattern, const SlopeCovariance& before_printing) const;
-  [[nodiscard]] Shown shown_by(const ReliefSlopes& slopes) const;
-  [[nodiscard]] ReliefSlopes slopes_toward(const ReliefSlopes& slopes, const Shown& toward, double share) const;
+  [[nodiscard]] Shown shown_by(const ReliefSlopes& slopes, const SlopeMoments& moments) const;
+  [[nodiscard]] ReliefSlopes slopes_toward(const ReliefSlopes& slopes, const SlopeMoments& moments, const Shown& toward,
+                                           double share) const;
 
   PrinterProfile printer_;
   PatchOptions patch_;

@@ -1,6 +1,7 @@
 #include <optional>
 
 #include <tbb/parallel_for.h>
+#include <Eigen/Core>
 
 #include "forward/base/error.h"
 #include "forward/pattern/pattern_parameters.h"
@@ -15,38 +16,37 @@ struct Printed {
   HeightDerivatives heights;
   GrayImage gray = {};
   PrintedSlopes relief = {};
+  SlopeMoments moments = {};
 };
 
 // ∂J/∂slope of what the covariance of a draw's slopes about their mean adds.
-void add_covariance_slopes(const ReliefSlopes& slopes, const SlopeCovariance& toward, double share,
-                           ReliefSlopes& into) {
-  double mean_x = 0.0, mean_y = 0.0;
-  for (std::size_t i = 0; i < slopes.x.size(); ++i) {
-    mean_x += slopes.x[i];
-    mean_y += slopes.y[i];
-  }
+ReliefSlopes covariance_slopes(const ReliefSlopes& slopes, const SlopeMoments& moments, const SlopeCovariance& toward,
+                               double share) {
   const auto n = static_cast<double>(slopes.x.size());
-  mean_x /= n;
-  mean_y /= n;
-  const double xx = 2.0 * share * toward.xx / n, yy = 2.0 * share * toward.yy / n, xy = share * toward.xy / n;
+  const auto xx = static_cast<float>(2.0 * share * toward.xx / n), yy = static_cast<float>(2.0 * share * toward.yy / n),
+             xy = static_cast<float>(share * toward.xy / n);
+  const auto mean_x = static_cast<float>(moments.mean_x), mean_y = static_cast<float>(moments.mean_y);
+  ReliefSlopes result{std::vector<float>(slopes.x.size()), std::vector<float>(slopes.y.size())};
   for (std::size_t i = 0; i < slopes.x.size(); ++i) {
-    const double x = slopes.x[i] - mean_x, y = slopes.y[i] - mean_y;
-    into.x[i] += static_cast<float>(xx * x + xy * y);
-    into.y[i] += static_cast<float>(yy * y + xy * x);
+    const float x = slopes.x[i] - mean_x, y = slopes.y[i] - mean_y;
+    result.x[i] = xx * x + xy * y;
+    result.y[i] = yy * y + xy * x;
   }
+  return result;
 }
 
 double dot(const std::vector<float>& a, const std::vector<float>& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += static_cast<double>(a[i]) * static_cast<double>(b[i]);
-  return sum;
+  const auto map = [](const std::vector<float>& v) {
+    return Eigen::Map<const Eigen::VectorXf>(v.data(), static_cast<Eigen::Index>(v.size())).cast<double>();
+  };
+  return map(a).dot(map(b));
 }
 
 }  // namespace
 
-ReliefSlopes SlopeModel::slopes_toward(const ReliefSlopes& slopes, const Shown& toward, double share) const {
-  ReliefSlopes result{std::vector<float>(slopes.x.size(), 0.0F), std::vector<float>(slopes.y.size(), 0.0F)};
-  add_covariance_slopes(slopes, toward.covariance, share, result);
+ReliefSlopes SlopeModel::slopes_toward(const ReliefSlopes& slopes, const SlopeMoments& moments, const Shown& toward,
+                                       double share) const {
+  ReliefSlopes result = covariance_slopes(slopes, moments, toward.covariance, share);
   for (std::size_t light = 0; light < lobes_.size(); ++light) {
     lobes_[light].add_slope_derivatives(
         slopes.x, slopes.y, grid_->scattered_back(toward.maps[light], variances_[light]), share, result.x, result.y);
@@ -64,7 +64,8 @@ double SlopeModel::figure_with_slopes(const Pattern& pattern, std::span<const st
     Printed draw{pixel_heights_with_derivatives(draw_instance(pattern, seeds_[i]), printer_, patch_.pixels, names)};
     draw.gray = expose(draw.heights.heights, printer_).image;
     draw.relief = process_.printed_slopes(draw.gray);
-    draws[i] = shown_by(draw.relief.slopes);
+    draw.moments = slope_moments(draw.relief.slopes);
+    draws[i] = shown_by(draw.relief.slopes, draw.moments);
     printed[i] = std::move(draw);
   });
   const Shown shown = mean_of(draws);
@@ -78,9 +79,10 @@ double SlopeModel::figure_with_slopes(const Pattern& pattern, std::span<const st
   const double share = 1.0 / static_cast<double>(seeds_.size());
   tbb::parallel_for(std::size_t{0}, seeds_.size(), [&](std::size_t i) {
     Printed draw = std::move(*printed[i]);
-    ReliefSlopes toward_slopes = slopes_toward(draw.relief.slopes, toward, share);
+    ReliefSlopes toward_slopes = slopes_toward(draw.relief.slopes, draw.moments, toward, share);
     const std::vector<float> toward_gray = process_.gray_slopes(std::move(draw.relief), std::move(toward_slopes));
-    const std::vector<float> toward_heights = wanted_height_slopes(draw.heights.heights, printer_, toward_gray);
+    const std::vector<float> toward_heights =
+        wanted_height_slopes(draw.heights.heights, draw.gray, printer_, toward_gray);
     for (std::size_t k = 0; k < names.size(); ++k) of_draws[i][k] = dot(toward_heights, draw.heights.toward[k]);
   });
   slopes.assign(names.size(), 0.0);

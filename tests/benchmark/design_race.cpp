@@ -21,6 +21,7 @@
 
 #include "forward/base/error.h"
 #include "forward/base/file_output.h"
+#include "forward/base/freed_memory.h"
 #include "inverse/design/printed_texture.h"
 #include "inverse/verification/verification.h"
 #include "race_methods.h"
@@ -159,6 +160,7 @@ int run(int count, char** arguments) {
 }  // namespace
 
 int main(int count, char** arguments) {
+  keep_freed_memory();
   try {
     return run(count, arguments);
   } catch (const std::exception& error) {

@@ -19,6 +19,7 @@
 
 #include <fmt/format.h>
 
+#include "forward/base/freed_memory.h"
 #include "forward/pattern/pattern_parameters.h"
 #include "inverse/design/design.h"
 #include "inverse/free_form/free_form.h"
@@ -144,6 +145,7 @@ Parametric best_pattern(const LobeTarget& goal, const DirectionMap& wanted, cons
 }  // namespace
 
 int main(int count, char** arguments) {
+  keep_freed_memory();
   const int budget = count > 1 ? std::atoi(arguments[1]) : 1200;
   const PrinterProfile printer;
   for (const Wanted& wanted : wanted_lobes()) {

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "forward/base/freed_memory.h"
 #include "forward/pattern/pattern_parameters.h"
 #include "inverse/design/slope_model.h"
 #include "inverse/objective/lobe_distance.h"
@@ -89,6 +90,7 @@ void measure(const std::string& name, const Pattern& pattern, std::size_t pixels
 }  // namespace
 
 int main() {
+  keep_freed_memory();
   const Sinusoid sinusoid{.wavelength_u = 130.0_um, .wavelength_v = 170.0_um, .direction = 25.0_deg, .height = 5.0_um};
   const Ridges ridges{.wavelength = 150.0_um, .direction = 25.0_deg, .height = 5.0_um, .skew = 0.4};
   const Noise noise{.scale = 90.0_um, .stretch = 1.8, .direction = 25.0_deg, .height = 5.0_um};

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "forward/base/freed_memory.h"
 #include "forward/base/random.h"
 #include "forward/pattern/pattern_parameters.h"
 #include "inverse/design/design.h"
@@ -227,6 +228,7 @@ void intervals(int recoveries) {
 }  // namespace
 
 int main(int count, char** arguments) {
+  keep_freed_memory();
   const std::string what = count > 1 ? arguments[1] : "";
   const int number = count > 2 ? std::atoi(arguments[2]) : 0;
   if (what == "anisotropy") {

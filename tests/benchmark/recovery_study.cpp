@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "forward/base/error.h"
+#include "forward/base/freed_memory.h"
 #include "inverse/design/design.h"
 #include "measure.h"
 #include "recovery_families.h"
@@ -91,6 +92,7 @@ void study(const Family& family, int targets) {
 }  // namespace
 
 int main(int count, char** arguments) {
+  keep_freed_memory();
   const int targets = count > 1 ? std::atoi(arguments[1]) : 40;
   const std::string letters = count > 2 ? arguments[2] : "SRNC";
   for (const Family& family : recovery_families()) {

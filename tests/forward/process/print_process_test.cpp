@@ -223,14 +223,15 @@ TEST(PrintProcess, LeadsTheSlopeBackToTheWantedHeights) {
   const GrayImage gray = expose(heights, profile).image;
   const std::vector<float> slopes = random_values(columns * rows, -1.0, 1.0, 9);
   const PrintProcess process(columns, rows, profile, {1, Surround::Mirror});
-  const std::vector<float> back = wanted_height_slopes(heights, profile, process.gray_slopes(gray, slopes));
+  const std::vector<float> back = wanted_height_slopes(heights, gray, profile, process.gray_slopes(gray, slopes));
   for (std::size_t i = 0; i < slopes.size(); ++i) EXPECT_NEAR(back[i], slopes[i], 1e-5);  // float gray near γ
 }
 
 TEST(PrintProcess, HasNoSlopeTowardHeightsOutOfReach) {
   const PrinterProfile profile;  // reaches 17.81 µm
   const HeightField heights({2, 1, 7.54_um, 7.54_um}, Continuation::Mirrored, {0.0F, 17.9F});
-  for (const float slope : wanted_height_slopes(heights, profile, std::vector<float>{1.0F, 1.0F}))
+  const GrayImage gray = expose(heights, profile).image;
+  for (const float slope : wanted_height_slopes(heights, gray, profile, std::vector<float>{1.0F, 1.0F}))
     EXPECT_EQ(slope, 0.0F);
 }
 
