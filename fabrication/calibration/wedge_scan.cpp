@@ -26,15 +26,62 @@ HeightField turned(const HeightField& field) {
   return out;
 }
 
+struct Rows {
+  std::size_t begin, end;
+};
+
+// The part of a scan that holds the wedge, and where it begins.
+struct WedgePart {
+  HeightField field;
+  std::size_t column = 0, row = 0;
+};
+
+// Without what lies too deep to be base; then without rows and columns that were not half measured.
+WedgePart wedge_part(const HeightField& scan, const Tilt& tilt, Length layer) {
+  HeightField masked = scan;
+  const auto level = [&](std::size_t column, std::size_t row) {
+    return static_cast<double>(scan.at(column, row)) -
+           tilt.slope_x * static_cast<double>(column) * scan.grid().pitch_x.um() -
+           tilt.slope_y * static_cast<double>(row) * scan.grid().pitch_y.um();
+  };
+  std::vector<double> heights_um;
+  for (std::size_t row = 0; row < scan.rows(); ++row) {
+    for (std::size_t column = 0; column < scan.columns(); ++column) {
+      if (!std::isnan(scan.at(column, row))) heights_um.push_back(level(column, row));
+    }
+  }
+  // Not the highest of all: spikes are.
+  const auto high = heights_um.begin() + static_cast<std::ptrdiff_t>(98 * heights_um.size() / 100);
+  std::nth_element(heights_um.begin(), high, heights_um.end());
+  const double deepest = *high - 1.25 * layer.um();
+  std::vector<std::size_t> by_column(scan.columns(), 0), by_row(scan.rows(), 0);
+  for (std::size_t row = 0; row < scan.rows(); ++row) {
+    for (std::size_t column = 0; column < scan.columns(); ++column) {
+      if (!(level(column, row) >= deepest)) {
+        masked.at(column, row) = std::numeric_limits<float>::quiet_NaN();
+        continue;
+      }
+      ++by_column[column];
+      ++by_row[row];
+    }
+  }
+  const auto range = [](const std::vector<std::size_t>& counts) {
+    const std::size_t most = *std::max_element(counts.begin(), counts.end());
+    const auto is_part = [most](std::size_t count) { return 2 * count > most; };
+    const auto first = std::find_if(counts.begin(), counts.end(), is_part);
+    const auto last = std::find_if(counts.rbegin(), counts.rend(), is_part).base();
+    return Rows{static_cast<std::size_t>(first - counts.begin()), static_cast<std::size_t>(last - counts.begin())};
+  };
+  const Rows columns = range(by_column), rows = range(by_row);
+  return {crop(masked, columns.begin, rows.begin, columns.end - columns.begin, rows.end - rows.begin), columns.begin,
+          rows.begin};
+}
+
 bool lies_along_y(const HeightField& field, WedgeAxis along) {
   if (along != WedgeAxis::Longer) return along == WedgeAxis::Y;
   const Grid& grid = field.grid();
   return static_cast<double>(grid.rows) * grid.pitch_y.um() > static_cast<double>(grid.columns) * grid.pitch_x.um();
 }
-
-struct Rows {
-  std::size_t begin, end;
-};
 
 // Medians down some rows, levelled.
 std::vector<double> median_profile(const HeightField& field, const Tilt& tilt, const Rows& rows) {
@@ -102,10 +149,13 @@ std::size_t samples_of(Length length, Length pitch) {
 
 class Reader {
 public:
-  Reader(const HeightField& field, const WedgeScanOptions& options) : field_(field), options_(options) {
-    const std::size_t steps = options.grays.size();
-    tilt_ = rough_tilt(field, std::max<std::size_t>(1, field.columns() / (8 * steps)),
-                       std::max<std::size_t>(1, field.rows() / 8));
+  Reader(const HeightField& scan, const WedgeScanOptions& options)
+      : options_(options),
+        tilt_(rough_tilt(scan, std::max<std::size_t>(1, scan.columns() / (8 * options.grays.size())),
+                         std::max<std::size_t>(1, scan.rows() / 8))),
+        part_(wedge_part(scan, tilt_, options.layer)),
+        field_(part_.field) {
+    require(field_.rows() >= 8 && field_.columns() >= 8, "a wedge needs at least 8 × 8 samples");
   }
 
   // Lattice and tilt decide each other: twice is enough, since the first tilt leaves plateaus nearly flat.
@@ -192,8 +242,9 @@ private:
     WedgeScan wedge;
     wedge.reversed = lattice_.reversed;
     wedge.step_width = pitch() * lattice_.width;
-    wedge.across_from = field_.grid().pitch_y * static_cast<double>(across_.steps.begin);
-    wedge.across_to = field_.grid().pitch_y * static_cast<double>(across_.steps.end);
+    wedge.across_from = field_.grid().pitch_y * static_cast<double>(part_.row + across_.steps.begin);
+    wedge.across_to = field_.grid().pitch_y * static_cast<double>(part_.row + across_.steps.end);
+    wedge.profile_start = pitch() * static_cast<double>(part_.column);
     wedge.tilt_x = tilt_.slope_x;
     wedge.tilt_y = tilt_.slope_y;
     wedge.roughness_um = levelled_.roughness_um;
@@ -218,7 +269,8 @@ private:
   [[nodiscard]] WedgeStep step(std::size_t told, const PlateauMean& base_mean) const {
     const std::size_t count = options_.grays.size(), place = lattice_.reversed ? count - 1 - told : told;
     const double from = lattice_.first + static_cast<double>(place) * lattice_.width;
-    WedgeStep step{options_.grays[told], pitch() * from, pitch() * (from + lattice_.width)};
+    const double first = from + static_cast<double>(part_.column);
+    WedgeStep step{options_.grays[told], pitch() * first, pitch() * (first + lattice_.width)};
     // Steps of gray 0 are base: theirs is its height.
     const PlateauMean& mean = levelled_.plateaus[options_.grays[told] == 0.0 ? base() : told];
     require(mean.samples > 0, fmt::format("step {} has no measured samples inside of its borders", told + 1));
@@ -239,9 +291,10 @@ private:
     if (wedge.reversed) wedge.notes.push_back("the step told first lies at the far end of the scan");
   }
 
-  const HeightField& field_;
   const WedgeScanOptions& options_;
   Tilt tilt_;
+  WedgePart part_;
+  const HeightField& field_;
   std::vector<double> profile_;
   Lattice lattice_;
   Across across_{};
@@ -258,11 +311,7 @@ WedgeScan measure_wedge(const HeightField& scan, const WedgeScanOptions& options
   require(scan.missing_count() < scan.grid().size(), "the scan has no measured samples");
   require(scan.rows() >= 8 && scan.columns() >= 8, "a wedge needs at least 8 × 8 samples");
   const bool along_y = lies_along_y(scan, options.along);
-  WedgeScan wedge = [&] {
-    if (!along_y) return Reader(scan, options).read();
-    const HeightField copy = turned(scan);
-    return Reader(copy, options).read();
-  }();
+  WedgeScan wedge = along_y ? Reader(turned(scan), options).read() : Reader(scan, options).read();
   wedge.along = along_y ? WedgeAxis::Y : WedgeAxis::X;
   if (along_y) std::swap(wedge.tilt_x, wedge.tilt_y);
   return wedge;

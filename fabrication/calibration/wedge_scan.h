@@ -15,6 +15,8 @@ struct WedgeScanOptions {
   WedgeAxis along = WedgeAxis::Longer;          ///< the axis from step to step
   Length least_border = Length::from_um(25.0);  ///< left out on every side of a step: what the light's spread rounds
   double border_share = 0.15;                   ///< of the step's width, where that is more
+  /// Of the wedge: what lies deeper than 1.25 of it below the highest steps is no part of it (the platform beside it).
+  Length layer = Length::from_um(18.0);
 };
 
 /// One step of a wedge as measured.
@@ -38,14 +40,15 @@ struct WedgeScan {
   std::size_t standing_out = 0;       ///< borders between steps whose heights differ by more than 4 standard errors
   std::vector<WedgeStep> steps;       ///< in the order told
   std::vector<double> profile_um;  ///< median across the steps, levelled, over the base; NaN where nothing was measured
-  Length profile_pitch;
+  Length profile_pitch, profile_start;
   std::vector<std::string> notes;
 };
 
 /// Finds the steps of a printed wedge in a scan and measures them.
 ///
 /// Layout    steps of one width side by side, over the middle of the scan across them; what lies beside them is base
-///           (a frame of gray 0). Without a frame, steps of gray 0 are the base.
+///           (a frame of gray 0), and what lies far below it is left out. Without a frame, steps of gray 0 are the
+///           base.
 /// Steps     the lattice of as many equal strips as there are gray values that leaves least variance within strips and
 ///           frame, with heights that do not fall as gray values rise; so steps that did not cure, and are level with
 ///           the base, are found by the others.
