@@ -217,7 +217,7 @@ json range_table(const CalibrationFindings& findings) {
 json step_table(const CureFit& fit) {
   std::vector<TableRow> rows;
   for (const FittedPoint& fitted : fit.points) {
-    const Outcome outcome = fitted.weight < 0.375 ? Outcome::Missed : Outcome::Information;
+    const Outcome outcome = fitted.weight < suspicious_weight ? Outcome::Missed : Outcome::Information;
     rows.push_back(
         {{fitted.point.place, fmt::format("{:.4g}", 255.0 * fitted.point.gray),
           fmt::format("{:.3g}", fitted.point.exposure), Quantity{fitted.point.height_um, "µm", fitted.error_um},
@@ -256,7 +256,7 @@ Report calibration_page(const CalibrationFindings& findings) {
   std::string text = fit.errors_were_given ? fmt::format("χ² {:.4g} of {} degrees of freedom, a chance of {:.2g}.",
                                                          fit.chi_squared, fit.degrees_of_freedom, fit.probability)
                                            : fmt::format("Heights scatter by {:.3g} µm about the curve.", fit.scale);
-  text += " Steps beyond 1.5 standard errors count less (Huber's loss).";
+  text += " Steps that lie far off count less (Student's loss).";
   page.sections.push_back({"Curve", text, {curve_chart(findings, rows), residual_chart(rows)}});
   page.sections.push_back({"Figures", "", {parameter_table(fit), range_table(findings)}});
   if (findings.wedge) {

@@ -73,16 +73,17 @@ std::vector<double> measured_residuals(const std::vector<WeighedPoint>& points, 
   return residuals;
 }
 
-// Huber's proposal 2: the scale at which the bounded residuals have the square that normal ones would have.
+// Huber's proposal 2: the scale at which residuals, bounded to 1.5 of it, have the square that normal ones would have.
+constexpr double scale_bound = 1.5, mean_bounded_square = 0.77847;
 double robust_scale(const std::vector<double>& residuals, double degrees_of_freedom) {
   double low = 1e-9, high = 1e-9;
   for (const double r : residuals) high = std::max(high, 2.0 * std::abs(r));
-  const double wanted = degrees_of_freedom * huber_mean_square;
+  const double wanted = degrees_of_freedom * mean_bounded_square;
   for (int i = 0; i < 100; ++i) {
     const double middle = 0.5 * (low + high);
     double sum = 0.0;
     for (const double r : residuals) {
-      const double bounded = std::min(std::abs(r) / middle, huber_bound);
+      const double bounded = std::min(std::abs(r) / middle, scale_bound);
       sum += bounded * bounded;
     }
     (sum > wanted ? low : high) = middle;
@@ -179,7 +180,7 @@ private:
 
   // A profile that comes out below the fit has found a better one, from which it starts again.
   [[nodiscard]] ProfileInterval interval(Attempt& attempt, int parameter, const FreeParameters& free) const {
-    const double rise = 0.5 * quantile(attempt) * quantile(attempt) * huber_mean_square / huber_mean_slope;
+    const double rise = 0.5 * quantile(attempt) * quantile(attempt) * mean_loss_square / mean_loss_slope;
     for (int i = 0;; ++i) {
       ProfileInterval found = profile_interval(attempt.points, attempt.best, parameter, free, rise, layer_um_);
       if (i == 3 || !(found.lowest.loss < attempt.best.loss - 1e-6)) return found;
@@ -237,8 +238,8 @@ private:
     }
     const Eigen::MatrixXd inverse = matrix.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
     const double beta = std::exp(attempt.best.parameters[1]);
-    // The loss's own spread, E ψ²/(E ψ')², where the weights have the mean E ψ(r)/r already.
-    const double factor = huber_mean_weight * huber_mean_square / (huber_mean_slope * huber_mean_slope);
+    // The loss's own spread, E ψ²/(E ψ')², where the weights have the mean E ψ/r already.
+    const double factor = mean_loss_weight * mean_loss_square / (mean_loss_slope * mean_loss_slope);
     for (int i = 0; i < n; ++i) {
       for (int j = 0; j < n; ++j)
         fit.covariance[i][j] = factor * inverse(i, j) * (i == 1 ? beta : 1.0) * (j == 1 ? beta : 1.0);
@@ -264,13 +265,14 @@ private:
       const double residual_um = seen.height_um - curve_um;
       const double root = std::abs(point_loss(seen, attempt.best.parameters, layer_um_).root);
       const bool is_measured = seen.role == PointRole::Measured;
+      // A censored one by the residual that would cost as much.
       const double size = is_measured ? std::abs(residual_um) / seen.error_um
-                                      : (root > huber_bound ? 0.5 * (root * root / huber_bound + huber_bound) : root);
-      const double weight = size > huber_bound ? huber_bound / size : 1.0;
+                                      : std::sqrt(student_freedom * std::expm1(root * root / (student_freedom + 1.0)));
+      const double weight = residual_weight(size);
       fit.points.push_back({points_[i], seen.role, seen.error_um, curve_um, residual_um, weight});
       below += seen.role == PointRole::BelowCure ? 1 : 0;
       saturated += seen.role == PointRole::Saturated ? 1 : 0;
-      if (weight < huber_bound / 4.0)
+      if (weight < suspicious_weight)
         fit.notes.push_back(fmt::format("{} lies {:+.3g} um off the curve, {:.1f} standard errors: it counts {:.0f} %",
                                         points_[i].place.empty() ? "a step" : points_[i].place, residual_um, size,
                                         100.0 * weight));

@@ -17,13 +17,16 @@ enum class PointRole {
 };
 [[nodiscard]] std::string_view role_name(PointRole role);
 
+/// A point of less weight is named in the notes: it lies more than some 4 standard errors off.
+inline constexpr double suspicious_weight = 0.25;
+
 struct FittedPoint {
   CurePoint point;
   PointRole role = PointRole::Measured;
   double error_um = 0.0;      ///< standard error that it was weighted with
   double predicted_um = 0.0;  ///< of the fitted curve, within 0 and the layer
   double residual_um = 0.0;   ///< measured − predicted
-  double weight = 1.0;        ///< below 1 where it lies so far off that the fit trusts it less
+  double weight = 1.0;        ///< ν/(ν + r²): below 1 the more standard errors r it lies off
 };
 
 /// A parameter with its 95 % interval; ±∞ where the data set no bound.
@@ -63,8 +66,9 @@ struct CureFit {
 /// Threshold  Heights below 2 standard errors say no more than that they are: their share of the likelihood is the
 ///            chance of a height so low (Tobit's), whatever their exact value. Nothing is dropped. Heights within 2
 ///            standard errors of the layer, or above, likewise.
-/// Outliers   Huber's loss, quadratic to 1.5 standard errors and linear beyond (96 % of the efficiency of least squares
-///            where there are none).
+/// Outliers   Student's loss with 5 degrees of freedom, which all but ignores what lies far off (94 % of the efficiency
+/// of
+///            least squares where nothing does). A point that counts less than a quarter (4 standard errors) is named.
 /// Errors     Where the points bring standard errors they are trusted, unless χ² has a chance below 1 %: then they are
 ///            scaled to the scatter, robustly, and intervals are Student's. Without them the scatter tells.
 /// Intervals  by profile likelihood (they are not symmetric), with the loss's own scale. γ is determined where its
@@ -74,7 +78,8 @@ struct CureFit {
 /// Errors     InvalidInput for fewer than two different doses that cured without filling the layer, for numbers that
 ///            are not finite, gray values outside of [0, 1], or where a scatter cannot be known (no errors and no more
 ///            points than parameters), and where the curve found would cure at gray 0.
-/// Source     Tobin, Econometrica 26 (1958); Huber, "Robust Statistics" 1981 (proposal 2 for the scale);
+/// Source     Tobin, Econometrica 26 (1958); Lange, Little, Taylor, JASA 84 (1989), on Student's
+///            errors; Huber, "Robust Statistics" 1981 (proposal 2 for the scale);
 ///            least squares by the Levenberg–Marquardt method of MINPACK (Eigen).
 [[nodiscard]] CureFit fit_cure(const std::vector<CurePoint>& points, const CureFitOptions& options = {});
 

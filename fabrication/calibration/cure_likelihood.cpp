@@ -13,15 +13,15 @@ namespace mezzotint {
 
 namespace {
 
-// Huber's loss of a residual r as the square of another one, and its slope toward r.
+// Student's loss of a residual r as the square of another one, and its slope toward r.
 struct Root {
   double value, slope;
 };
-Root huber_root(double r) {
-  const double size = std::abs(r);
-  if (size <= huber_bound) return {r, 1.0};
-  const double value = std::sqrt(huber_bound * (2.0 * size - huber_bound));
-  return {std::copysign(value, r), huber_bound / value};
+Root student_root(double r) {
+  constexpr double nu = student_freedom;
+  const double value = std::copysign(std::sqrt((nu + 1.0) * std::log1p(r * r / nu)), r);
+  const double steepest = std::sqrt((nu + 1.0) / nu);  // at r = 0
+  return {value, std::abs(value) > 1e-9 ? (nu + 1.0) * r / ((nu + r * r) * value) : steepest};
 }
 
 // √(−2 ln Φ(z)) and its slope toward z.
@@ -110,13 +110,13 @@ PointLoss point_loss(const WeighedPoint& point, const CureParameters& parameters
   Root root{};
   double toward_curve = 0.0;
   if (point.role == PointRole::Measured) {
-    root = huber_root((curve.height_um - point.height_um) / point.error_um);
+    root = student_root((curve.height_um - point.height_um) / point.error_um);
     toward_curve = root.slope * toward_height;
   } else {
     const bool below = point.role == PointRole::BelowCure;
     const double room = below ? -curve.height_um : curve.height_um - layer_um;
     const Root censored = censored_root(room / point.error_um + detectable);
-    root = huber_root(censored.value);
+    root = student_root(censored.value);
     toward_curve = root.slope * censored.slope * (below ? -toward_height : toward_height);
   }
   PointLoss loss{root.value, {}};
@@ -142,8 +142,8 @@ CureParameters minimize_loss(const std::vector<WeighedPoint>& points, const Cure
   Eigen::VectorXd x(problem.inputs());
   for (int k = 0; k < problem.inputs(); ++k) x[k] = start[problem.free[k]];
   Eigen::LevenbergMarquardt<Problem> search(problem);
-  search.parameters.xtol = search.parameters.ftol = 1e-12;
-  search.parameters.maxfev = 400;
+  search.parameters.xtol = search.parameters.ftol = 1e-10;
+  search.parameters.maxfev = 200;
   search.minimize(x);
   const CureParameters found = problem.at(x);
   // At a kink a step may have made it worse.
@@ -165,12 +165,12 @@ LeastLoss least_loss(const std::vector<WeighedPoint>& points, double layer_um) {
     if (candidate.loss < best.loss) best = candidate;
   };
   // Below the darkest step that cured, closer together the closer to it; and some above, in case that one is no step.
-  constexpr int starts = 40;
+  constexpr int starts = 24;
   for (int i = 0; i < starts; ++i) {
     const double below = 1e-3 * std::pow((dark - least_gamma) / 1e-3, i / (starts - 1.0));
     offer(least_loss_at(points, std::max(least_gamma, dark - below), layer_um));
   }
-  for (int i = 1; i <= 10; ++i) offer(least_loss_at(points, std::min(largest_gamma, dark + 0.04 * i), layer_um));
+  for (int i = 1; i <= 6; ++i) offer(least_loss_at(points, std::min(largest_gamma, dark + 0.06 * i), layer_um));
   const CureParameters found = minimize_loss(points, best.parameters, {true, true, true}, layer_um);
   offer({found, total_loss(points, found, layer_um)});
   return best;
@@ -183,13 +183,13 @@ std::array<std::array<double, 3>, 3> information(const std::vector<WeighedPoint>
     const CurveValue curve = curve_value(parameters, point.gray, point.exposure, layer_um);
     double weight = 1.0;
     if (point.role == PointRole::Measured) {
-      const double r = std::abs(curve.height_um - point.height_um) / point.error_um;
-      weight = r > huber_bound ? huber_bound / r : 1.0;
+      const double r = (curve.height_um - point.height_um) / point.error_um;
+      weight = residual_weight(r) * (student_freedom + 1.0) / student_freedom;
     } else {
       const bool below = point.role == PointRole::BelowCure;
       const double z = (below ? -curve.height_um : curve.height_um - layer_um) / point.error_um + 2.0;
       const double slope = log_normal_probability(z).slope;
-      weight = std::clamp(slope * (slope + z), 0.0, 1.0);
+      weight = mean_loss_weight * std::clamp(slope * (slope + z), 0.0, 1.0);
     }
     weight /= point.error_um * point.error_um;
     for (std::size_t i = 0; i < 3; ++i) {

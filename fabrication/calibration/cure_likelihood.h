@@ -26,9 +26,12 @@ struct CurveValue {
 };
 [[nodiscard]] CurveValue curve_value(const CureParameters& parameters, double gray, double exposure, double layer_um);
 
-/// Huber's bound, and what it makes of normal residuals: E ψ', E ψ² and E ψ(r)/r.
-inline constexpr double huber_bound = 1.5;
-inline constexpr double huber_mean_slope = 0.86639, huber_mean_square = 0.77847, huber_mean_weight = 0.97327;
+/// Student's loss of a residual r of standard errors, ½ (ν + 1) ln(1 + r²/ν) with ν = 5, of slope ψ = (ν + 1) r/(ν +
+/// r²); what lies far off is all but ignored. And what normal residuals make of it: E ψ', E ψ² and E ψ/r.
+inline constexpr double student_freedom = 5.0;
+inline constexpr double mean_loss_slope = 0.807644, mean_loss_square = 0.692480, mean_loss_weight = 1.038471;
+/// How much of a residual of r standard errors counts: 1 for none, ν/(ν + r²).
+[[nodiscard]] inline double residual_weight(double r) { return student_freedom / (student_freedom + r * r); }
 
 /// A point's share of 2·(−log likelihood) as the square of a residual, with its slopes.
 struct PointLoss {

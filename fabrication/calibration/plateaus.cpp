@@ -125,14 +125,12 @@ Tilt tilt_within(const std::vector<Moments>& sums) {
 struct BlockScatter {
   double variance = 0.0;  ///< of a block's mean
   double blocks = 0.0, plateaus = 0.0;
-  double lever_xx = 0.0;       ///< Σ (x − the plateau's mean)² over blocks
-  std::vector<double> counts;  ///< blocks of each plateau, by their samples
 };
 
 BlockScatter scatter_of(const Level& level, const std::vector<Patch>& patches, const std::vector<Window>& window,
                         std::size_t side_x, std::size_t side_y) {
   struct Sum {
-    double count = 0.0, mean = 0.0, square = 0.0, x = 0.0, xx = 0.0;
+    double count = 0.0, mean = 0.0, square = 0.0;
   };
   std::vector<Sum> sums(window.size());
   for (const Patch& patch : patches) {
@@ -150,39 +148,28 @@ BlockScatter scatter_of(const Level& level, const std::vector<Patch>& patches, c
         if (count < 0.5 * static_cast<double>(side_x * side_y)) continue;
         Sum& sum = sums[patch.plateau];
         const double mean = height / count - 0.5 * (window[patch.plateau].low + window[patch.plateau].high);
-        const double x = level.x_um(column);
         sum.count += 1.0;
         sum.mean += mean;
         sum.square += mean * mean;
-        sum.x += x;
-        sum.xx += x * x;
       }
     }
   }
   BlockScatter scatter;
   for (const Sum& sum : sums) {
-    scatter.counts.push_back(sum.count);
     if (sum.count < 2.0) continue;
     scatter.variance += sum.square - sum.mean * sum.mean / sum.count;
     scatter.blocks += sum.count;
     scatter.plateaus += 1.0;
-    scatter.lever_xx += sum.xx - sum.x * sum.x / sum.count;
   }
   const double freedom = scatter.blocks - scatter.plateaus;
   scatter.variance = freedom >= 1.0 ? scatter.variance / freedom : 0.0;
   return scatter;
 }
 
-// The largest variance of a mean over one sample's area that any size of block with enough blocks promises.
-struct Correlated {
-  double variance_times_samples = 0.0;
-  double slope_x_variance = 0.0;
-};
-
-Correlated correlated_scatter(const Level& level, const std::vector<Patch>& patches,
-                              const std::vector<Window>& window) {
+// The largest variance of a mean, times its samples, that any size of block with enough blocks promises.
+double correlated_variance(const Level& level, const std::vector<Patch>& patches, const std::vector<Window>& window) {
   constexpr double enough_freedom = 20.0;
-  Correlated found;
+  double largest = 0.0;
   std::size_t widest = 1, highest = 1;
   for (const Patch& patch : patches) {
     widest = std::max(widest, patch.column_end - patch.column);
@@ -195,12 +182,9 @@ Correlated correlated_scatter(const Level& level, const std::vector<Patch>& patc
     if (across > highest) break;
     const BlockScatter scatter = scatter_of(level, patches, window, side, across);
     if (scatter.blocks - scatter.plateaus < enough_freedom) break;
-    const double variance = scatter.variance * static_cast<double>(side * across);
-    if (variance <= found.variance_times_samples) continue;
-    found.variance_times_samples = variance;
-    found.slope_x_variance = scatter.lever_xx > 0.0 ? scatter.variance / scatter.lever_xx : 0.0;
+    largest = std::max(largest, scatter.variance * static_cast<double>(side * across));
   }
-  return found;
+  return largest;
 }
 
 }  // namespace
@@ -240,17 +224,18 @@ Levelled level_plateaus(const HeightField& field, const std::vector<Patch>& patc
   }
   window = windows(level, patches, plateaus);
   sums = moments(level, patches, window);
-  const Correlated scatter = correlated_scatter(level, patches, window);
+  const double variance = correlated_variance(level, patches, window);
   Levelled levelled{level.tilt, 0.0, {}};
-  levelled.tilt.error_x = std::sqrt(scatter.slope_x_variance);
-  double square = 0.0, count = 0.0;
+  double square = 0.0, count = 0.0, lever = 0.0;
   for (const Moments& s : sums) {
     const double samples = std::max(1.0, s.count);
-    levelled.plateaus.push_back({s.z / samples, std::sqrt(scatter.variance_times_samples / samples), s.x / samples,
-                                 static_cast<std::size_t>(s.count), s.outliers});
+    levelled.plateaus.push_back(
+        {s.z / samples, std::sqrt(variance / samples), s.x / samples, static_cast<std::size_t>(s.count), s.outliers});
     square += s.zz - s.z * s.z / samples;
     count += s.count;
+    lever += s.xx - s.x * s.x / samples;
   }
+  levelled.tilt.error_x = lever > 0.0 ? std::sqrt(variance / lever) : 0.0;
   levelled.roughness_um = std::sqrt(std::max(0.0, square) / std::max(1.0, count));
   return levelled;
 }

@@ -52,7 +52,9 @@ public:
       neighbour = there.parameters;
       step *= 1.5;
     }
-    for (int i = 0; i < 40 && std::abs(outside - inside) > 1e-9; ++i) {
+    // To a thousandth of what has been gone: the interval itself is no better known.
+    const double enough = 1e-3 * std::abs(outside - best.parameters[parameter_]);
+    while (std::abs(outside - inside) > enough) {
       const double middle = 0.5 * (inside + outside);
       const LeastLoss there = at(middle, neighbour);
       if (there.loss <= limit) {

@@ -1,5 +1,6 @@
 #include "fabrication/calibration/cure_fit.h"
 
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -124,6 +125,12 @@ TEST(CureFit, TrustsOutliersLessAndSaysSo) {
   EXPECT_NE(all_notes(with).find("step 10 lies"), std::string::npos);
   EXPECT_NE(all_notes(with).find("step 15 lies"), std::string::npos);
   EXPECT_TRUE(covers(with.alpha_um, 17.71));
+  // On the first step that cures hangs γ: where it lies off, the rest still decide.
+  points = clean;
+  points[3].height_um += 3.0;
+  const CureFit first = fit_cure(points);
+  EXPECT_LT(first.points[3].weight, 0.1);
+  EXPECT_TRUE(covers(first.gamma, -0.01)) << first.gamma.low_95 << " " << first.gamma.high_95;
 }
 
 TEST(CureFit, TakesSaturatedStepsAsSuch) {
@@ -163,24 +170,20 @@ TEST(CureFit, CarriesTheErrorOfTheBaseIntoAlpha) {
               std::hypot(before.alpha_um.high_95 - before.alpha_um.value, 0.3 * 1.959964), 1e-6);
 }
 
-// Of 200 wedges each interval should hold 95 %: 190 ± 3.1. Below 179 (3.5 of these) chance has 2e-4.
+// Of 100 wedges each interval should hold 95 ± 2.2: fewer than 87 (3.6 of these) has a chance of 2e-3 in all six.
+// Errors that were a third too small would give 81. A study counts thousands.
 TEST(CureFit, IntervalsCoverTheTruthAsOftenAsTheySay) {
   for (const bool say_error : {true, false}) {
     const WedgeSample sample{.grays = every_level(0, 255, 15), .error_um = 0.15, .say_error = say_error};
-    int alpha = 0, beta = 0, gamma = 0, determined = 0;
-    constexpr int wedges = 200;
-    for (std::uint64_t seed = 0; seed < wedges; ++seed) {
+    std::array<int, 3> held{};
+    for (std::uint64_t seed = 0; seed < 100; ++seed) {
       const CureFit fit = fit_cure(draw(sample, 100 + seed));
-      determined += fit.gamma_is_determined ? 1 : 0;
-      alpha += covers(fit.alpha_um, 17.71) ? 1 : 0;
-      beta += covers(fit.beta_um, 10.24) ? 1 : 0;
-      gamma += covers(fit.gamma, -0.01) ? 1 : 0;
+      EXPECT_TRUE(fit.gamma_is_determined) << seed;
+      held[0] += covers(fit.alpha_um, 17.71) ? 1 : 0;
+      held[1] += covers(fit.beta_um, 10.24) ? 1 : 0;
+      held[2] += covers(fit.gamma, -0.01) ? 1 : 0;
     }
-    EXPECT_EQ(determined, wedges);
-    for (const int covered : {alpha, beta, gamma}) {
-      EXPECT_GE(covered, 179) << say_error;
-      EXPECT_LE(covered, 199) << say_error;
-    }
+    for (const int count : held) EXPECT_GE(count, 87) << say_error;
   }
 }
 
