@@ -229,6 +229,23 @@ json step_table(const CureFit& fit) {
                {"step", "level", "exposure", "height", "curve (µm)", "residual (µm)", "counts as", "weight"}, rows);
 }
 
+std::vector<KeyFigure> key_figures(const CalibrationFindings& findings) {
+  const CureFit& fit = findings.fit;
+  const auto figure = [](const char* name, const FittedNumber& number, const char* unit, bool is_fitted) {
+    KeyFigure key;
+    key.name = name;
+    key.quantity = {number.value, unit, is_fitted ? std::optional(number.standard_error) : std::nullopt};
+    return key;
+  };
+  KeyFigure first;
+  first.name = "First level";
+  first.quantity.value = findings.range.first_level.level;
+  first.note = "the first that cures";
+  KeyFigure gamma = figure("γ", fit.gamma, "1", fit.gamma_is_determined);
+  if (!fit.gamma_is_determined) gamma.note = "not determined: the base profile's";
+  return {figure("α", fit.alpha_um, "µm", true), figure("β", fit.beta_um, "µm", true), gamma, first};
+}
+
 Verdict verdict_of(const CalibrationFindings& findings) {
   const CureFit& fit = findings.fit;
   std::string text = fmt::format("Height = {:.2f} + {:.2f} ln(I {} {:.4f}) µm", fit.curve.alpha.um(),
@@ -245,13 +262,7 @@ Report calibration_page(const CalibrationFindings& findings) {
   Report page{.title = "Calibration of " + findings.printer.name,
               .subtitle = fmt::format("{} steps of {}", fit.points.size(), findings.source),
               .verdict = verdict_of(findings),
-              .key_figures = {{"α", {fit.alpha_um.value, "µm", fit.alpha_um.standard_error}},
-                              {"β", {fit.beta_um.value, "µm", fit.beta_um.standard_error}},
-                              {"γ",
-                               {fit.gamma.value, "1",
-                                fit.gamma_is_determined ? std::optional(fit.gamma.standard_error) : std::nullopt}},
-                              {"First level", {double(findings.range.first_level.level), "1", {}}},
-                              {"Full gray", findings.range.full_height}}};
+              .key_figures = key_figures(findings)};
   for (const std::string& warning : warnings_of(findings)) page.messages.push_back({MessageLevel::Note, warning});
   std::string text = fit.errors_were_given ? fmt::format("χ² {:.4g} of {} degrees of freedom, a chance of {:.2g}.",
                                                          fit.chi_squared, fit.degrees_of_freedom, fit.probability)

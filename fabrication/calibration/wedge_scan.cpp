@@ -34,6 +34,7 @@ struct Rows {
 struct WedgePart {
   HeightField field;
   std::size_t column = 0, row = 0;
+  bool ends_before = false, ends_below = false;  ///< the scan goes on beyond its last column, last row
 };
 
 // Without what lies too deep to be base; then without rows and columns that were not half measured.
@@ -74,7 +75,7 @@ WedgePart wedge_part(const HeightField& scan, const Tilt& tilt, Length layer) {
   };
   const Rows columns = range(by_column), rows = range(by_row);
   return {crop(masked, columns.begin, rows.begin, columns.end - columns.begin, rows.end - rows.begin), columns.begin,
-          rows.begin};
+          rows.begin, columns.end < scan.columns(), rows.end < scan.rows()};
 }
 
 bool lies_along_y(const HeightField& field, WedgeAxis along) {
@@ -200,7 +201,10 @@ private:
   // Steps inside of their borders; frame on both sides, and above and below; steps of gray 0 are base too.
   void place_patches() {
     const auto edge = static_cast<double>(border());
-    across_ = rows_of(field_, tilt_, profile_, samples_of(pitch() * edge, field_.grid().pitch_y));
+    const std::size_t edge_rows = samples_of(pitch() * edge, field_.grid().pitch_y);
+    across_ = rows_of(field_, tilt_, profile_, edge_rows);
+    if (part_.row > 0) across_.below.begin = std::min(edge_rows, across_.below.end);
+    if (part_.ends_below) across_.above.end = std::max(across_.above.begin, field_.rows() - edge_rows);
     patches_.clear();
     const std::size_t count = options_.grays.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -211,10 +215,12 @@ private:
     }
     const double end = lattice_.first + static_cast<double>(count) * lattice_.width;
     const auto last = static_cast<double>(field_.columns());
-    add_patch(0.0, lattice_.first - edge, across_.steps, base());
-    add_patch(end + edge, last, across_.steps, base());
-    add_patch(0.0, last, across_.below, base());
-    add_patch(0.0, last, across_.above, base());
+    // The outer edge of a frame is round too, where the platform is seen beyond it.
+    const double left = part_.column > 0 ? edge : 0.0, right = part_.ends_before ? last - edge : last;
+    add_patch(left, lattice_.first - edge, across_.steps, base());
+    add_patch(end + edge, right, across_.steps, base());
+    add_patch(left, right, across_.below, base());
+    add_patch(left, right, across_.above, base());
   }
 
   // Another number of strips that leaves far less variance is the number of steps.
