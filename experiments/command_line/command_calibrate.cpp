@@ -23,7 +23,7 @@ namespace {
 struct Arguments {
   std::string input, output, base, levels, along = "longer", name, wedge;
   double layer_um = 0.0, border_um = 25.0;
-  std::size_t step_pixels = 40, rows = 60, frame = 20;
+  std::size_t step_pixels = 40, rows = 60, frame = 30;
 };
 
 PrinterProfile base_of(const Arguments& arguments) {
@@ -150,7 +150,7 @@ void add_arguments(CLI::App& app, Arguments& a) {
       ->check(in_range(0.0, 1000.0));
   app.add_option("--step-pixels", a.step_pixels, "Width of a step of --wedge (default 40)")->check(CLI::Range(4, 4000));
   app.add_option("--rows", a.rows, "Pixels of a step of --wedge across it (default 60)")->check(CLI::Range(4, 4000));
-  app.add_option("--frame", a.frame, "Pixels of base around the steps of --wedge (default 20)")
+  app.add_option("--frame", a.frame, "Pixels of base around the steps of --wedge (default 30)")
       ->check(CLI::Range(4, 4000));
 }
 

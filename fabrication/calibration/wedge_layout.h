@@ -16,7 +16,7 @@ struct WedgeLayout {
   std::vector<int> levels;  ///< of 8 bits, from x = 0 on
   std::size_t step_pixels = 40;
   std::size_t rows = 60;  ///< of the strips
-  std::size_t frame_pixels = 20;
+  std::size_t frame_pixels = 30;
 };
 
 /// The levels of the wedge that is printed where none are told: full gray, then 0 to 255 by 15.

@@ -63,7 +63,7 @@ void study_tables(const char* name, const test::WedgeSample& sample, int tables,
 
 void study_prints(const char* name, std::size_t step_pixels, int prints) {
   const PrinterProfile profile;
-  const WedgeLayout layout{parse_levels(default_wedge_levels), step_pixels, 40, 14};
+  const WedgeLayout layout{parse_levels(default_wedge_levels), step_pixels, 40, 30};
   const Job job = make_patch_job("wedge", wedge_image(layout), profile, {2, 4});
   WedgeScanOptions wedge_options;
   for (const int level : layout.levels) wedge_options.grays.push_back(level / 255.0);
