@@ -66,15 +66,14 @@ struct CureFit {
 /// Threshold  Heights below 2 standard errors say no more than that they are: their share of the likelihood is the
 ///            chance of a height so low (Tobit's), whatever their exact value. Nothing is dropped. Heights within 2
 ///            standard errors of the layer, or above, likewise.
-/// Outliers   Student's loss with 5 degrees of freedom, which all but ignores what lies far off (94 % of the efficiency
-/// of
-///            least squares where nothing does). A point that counts less than a quarter (4 standard errors) is named.
-/// Errors     Where the points bring standard errors they are trusted, unless χ² has a chance below 1 %: then they are
-///            scaled to the scatter, robustly, and intervals are Student's. Without them the scatter tells.
+/// Outliers   Student's loss with 5 degrees of freedom, which all but ignores what lies far off (94 % of the
+///            efficiency of least squares where nothing does). A point that counts less than a quarter (4 standard
+///            errors) is named.
+/// Scale      Where the points bring standard errors they are trusted, unless χ² has a chance below 1 %: then they
+///            are scaled to the scatter, robustly, and intervals are Student's. Without them the scatter tells.
 /// Intervals  by profile likelihood (they are not symmetric), with the loss's own scale. γ is determined where its
-/// interval ends
-///            above −1; where not, γ is the base's (or the nearest end of the interval), α and β hold for that γ, and
-///            a note says so.
+///            interval ends above −1; where not, γ is the base's (or the nearest end of the interval), α and β
+///            hold for that γ, and a note says so.
 /// Errors     InvalidInput for fewer than two different doses that cured without filling the layer, for numbers that
 ///            are not finite, gray values outside of [0, 1], or where a scatter cannot be known (no errors and no more
 ///            points than parameters), and where the curve found would cure at gray 0.

@@ -26,8 +26,9 @@ struct CurveValue {
 };
 [[nodiscard]] CurveValue curve_value(const CureParameters& parameters, double gray, double exposure, double layer_um);
 
-/// Student's loss of a residual r of standard errors, ½ (ν + 1) ln(1 + r²/ν) with ν = 5, of slope ψ = (ν + 1) r/(ν +
-/// r²); what lies far off is all but ignored. And what normal residuals make of it: E ψ', E ψ² and E ψ/r.
+/// Student's loss of a residual r of standard errors, ½ (ν + 1) ln(1 + r²/ν) with ν = 5; its slope is
+/// ψ = (ν + 1) r/(ν + r²), so that what lies far off is all but ignored. And what normal residuals make of it:
+/// E ψ', E ψ² and E ψ/r.
 inline constexpr double student_freedom = 5.0;
 inline constexpr double mean_loss_slope = 0.807644, mean_loss_square = 0.692480, mean_loss_weight = 1.038471;
 /// How much of a residual of r standard errors counts: 1 for none, ν/(ν + r²).

@@ -21,9 +21,8 @@ struct CureTableOptions {
 ///          standard_deviation_um (or sd_um) with repeats (or n)       optional: its standard error is sd/√n
 ///          repeats alone                                              weights of the heights
 ///          Names are taken in any case and order, with blanks, "-" or "_", and units in brackets: "Height [µm]".
-/// Lines    '#' starts a comment; cells are separated by ';', a tab, ',' or blanks; numbers have decimal points. A cell
-/// of
-///          the height that is empty or NaN leaves the step out.
+/// Lines    '#' starts a comment; cells are separated by ';', a tab, ',' or blanks; numbers have decimal points. A
+///          cell of the height that is empty or NaN leaves the step out.
 /// @throws  FileError with line and what would be right: a column missing, twice or unknown, a number that is none, a
 ///          height without unit in its name, no steps.
 [[nodiscard]] std::vector<CurePoint> read_cure_table(const std::filesystem::path& path,

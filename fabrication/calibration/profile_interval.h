@@ -6,8 +6,8 @@
 
 namespace mezzotint {
 
-/// Where the loss, least over all other free parameters, stays within `rise` of its minimum; ±∞ where it does up to the
-/// ends of what a printer file takes.
+/// Where the loss, least over all other free parameters, stays within `rise` of its minimum; ±∞ where it does up to
+/// the ends of what a printer file takes.
 struct ProfileInterval {
   double low, high;
   LeastLoss lowest;  ///< the best that was met on the way: below the start's where that was no minimum

@@ -24,10 +24,9 @@ inline constexpr double filled_share = 0.9;
 
 /// Whether the top of the print is a height field over the part: what cures by its own light lies on a layer that is
 /// filled, or is an overhang that fills its own layer and hangs on to a neighbour that is held.
-/// @throws MethodError naming the first layer (from the last one down) and pixel where that does not hold: above a
-/// layer
-///         that cures and does not fill; a film over a void that does not fill its layer, whose place in the gap no
-///         dose tells; an island that nothing holds.
+/// @throws MethodError naming the first layer (from the last one down) and pixel where that does not hold: above
+///         a layer that cures and does not fill; a film over a void that does not fill its layer, whose place in the
+///         gap no dose tells; an island that nothing holds.
 void require_height_field(const Job& job, const PrinterProfile& profile);
 
 }  // namespace mezzotint

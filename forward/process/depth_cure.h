@@ -21,9 +21,9 @@ struct StackLayer {
 ///
 /// Model    Light enters a layer at its upper face, the one at the window, and goes on down through everything that was
 ///          printed before: a layer of dose D there gives D·e^(−z/β) at the depth z below, whether that is resin or
-///          solid. Doses add up, and resin is solid where their sum reaches the critical e^(−α/β). Within layer j it is
-///          A_j·e^(−z/β) with A_j = k_j (I_j − γ) + e^(−τ_(j+1)/β) A_(j+1), the sum at its upper face: so the upper
-///          min(τ_j, α + β ln A_j) of the layer is solid. One number a column, whatever the number of layers.
+///          solid. Doses add up, and resin is solid where their sum reaches the critical e^(−α/β). In layer j it is
+///          A_j·e^(−z/β) with A_j = k_j (I_j − γ) + e^(−τ_(j+1)/β) A_(j+1), the sum at its upper face:
+///          so the upper min(τ_j, α + β ln A_j) of the layer is solid. One number a column, whatever the layers.
 /// Reduces  to `gray_to_height` for one layer, to the bit. k times the exposure moves α by β ln k.
 /// Stray    light (−γ) is in every layer, in dark pixels too: it adds up to at most −γ/(1 − e^(−τ/β)).
 /// Beyond   the last layer printed there is no light. Left out: bleaching, scattering in the resin, other attenuation

@@ -39,8 +39,8 @@ public:
   void print(std::size_t count, const LayerSource& source, const LayerVisit& visit) const;
   [[nodiscard]] std::vector<std::vector<float>> print(std::span<const LitLayer> layers) const;
 
-  /// By the adjoint: from ∂J/∂(solid thickness), one list a layer and one value a sample, to ∂J/∂(gray value), one list
-  /// a layer and one value a pixel. A layer that is solid throughout, or not at all, does not move.
+  /// By the adjoint: from ∂J/∂(solid thickness), one list a layer and one value a sample, to ∂J/∂(gray value),
+  /// one list a layer and one value a pixel. A layer that is solid throughout, or not at all, does not move.
   /// A face that looks down moves with the sum of thicknesses over the layers that its solid reaches through.
   /// @throws InvalidInput as `print`, or for another number of slopes.
   [[nodiscard]] std::vector<std::vector<float>> gray_slopes(std::span<const LitLayer> layers,

@@ -175,7 +175,8 @@ TEST(WedgeScan, TellsErrorsThatAllowForCorrelation) {
       }
       EXPECT_NEAR(wedge.roughness_um, 0.2, 0.03);
     }
-    // √n times the error is σ times the block's side: .2 and 1.6; the largest of several sizes, and the tilt, add some.
+    // √n times the error is σ times the block's side: .2 and 1.6; the largest of several sizes, and the tilt, add
+    // some.
     EXPECT_NEAR(said / count / (0.2 * static_cast<double>(block)), 1.2, 0.35) << block;
     // 36 squares about 1: ±.24, three of these; below where errors allow for too much.
     EXPECT_LT(chi_squared / count, 1.7) << block;
