@@ -67,5 +67,6 @@ Command add_print(CLI::App& program);
 Command add_validate(CLI::App& program);
 Command add_chart(CLI::App& program);
 Command add_gamut(CLI::App& program);
+Command add_calibrate(CLI::App& program);
 
 }  // namespace mezzotint
