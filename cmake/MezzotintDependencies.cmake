@@ -1,6 +1,9 @@
 # Every library that we use, found the way it asks to be found. Debian 12's versions.
 
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+# After Eigen: CGAL's own way to find Eigen hides its target. Only fabrication/repair includes CGAL.
+set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
+find_package(CGAL 5.5 REQUIRED)
 find_package(embree 3 REQUIRED)
 find_package(NLopt REQUIRED)
 find_package(TBB REQUIRED)
