@@ -4,7 +4,9 @@
 
 #include "tests/fabrication/slicing/shapes.h"
 
-namespace mezzotint::test {
+namespace mezzotint::benchmark {
+
+using namespace test;
 
 // The parts of the slicing race, all in millimetres and within the projector's field of 19.3 × 12.1 mm.
 
@@ -30,4 +32,4 @@ inline PartMesh race_plate(std::size_t columns, std::size_t rows) {
 /// A body that fills the field, 20 mm high.
 inline PartMesh race_block() { return box({0.0, 0.0, 0.0}, {19.2, 12.0, 20.0}); }
 
-}  // namespace mezzotint::test
+}  // namespace mezzotint::benchmark
