@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "experiments/command_line/command.h"
+#include "experiments/command_line/part_arguments.h"
 #include "fabrication/job/job.h"
 #include "forward/base/quantity.h"
 #include "forward/bsdf_table/bsdf_table_file.h"
@@ -160,13 +161,24 @@ bool begins_with(const std::filesystem::path& path, std::string_view magic) {
   return stream && head == magic;
 }
 
-Json describe_any(const std::filesystem::path& path) {
+// A mesh may be a piece of relief or a part: both are said, for 3MF the part alone.
+Json describe_mesh(const std::filesystem::path& path, std::optional<Length> unit) {
+  const PartFile part = read_part(path, {.unit = unit});
+  Json json = is_mesh_path(path) ? describe(read_mesh(path, unit)) : Json{{"format", "mesh, " + part.format}};
+  json["part"] = describe(mesh_facts(part.mesh));
+  if (!part.mesh.group_names.empty()) json["part"]["groups"] = part.mesh.group_names;
+  if (!part.notes.empty()) json["part"]["notes"] = part.notes;
+  return json;
+}
+
+Json describe_any(const std::filesystem::path& path, const std::string& unit) {
+  if (is_part_path(path)) return describe_mesh(path, unit_named(unit));
+  require(unit.empty(), "--unit is for meshes (.obj, .ply, .stl, .3mf)");
   if (path.extension() == ".uvj") return describe(read_uvj(path));
   // An OpenEXR file is a relief where it has a sidecar, else a BSDF.
   if (begins_with(path, "\x76\x2f\x31\x01") && !has_sidecar(path)) {
     return is_bsdf_table(path) ? describe(read_bsdf_table(path)) : describe(read_channels_exr(path));
   }
-  if (is_mesh_path(path)) return describe(read_mesh(path));
   if (is_reflectance_file(path)) return describe(read_reflectance(path));
   const SurfaceFile surface = read_surface(path);
   Json json = describe(surface);
@@ -201,13 +213,17 @@ std::string in_words(const Json& json) {
   return text;
 }
 
-Command describing_command(CLI::App& program, const char* name, const char* help,
-                           Json (*describe_file)(const std::filesystem::path&)) {
+Command describing_command(CLI::App& program, const char* name, const char* help, bool has_unit,
+                           Json (*describe_file)(const std::filesystem::path&, const std::string& unit)) {
   auto* app = program.add_subcommand(name, help);
-  auto file = std::make_shared<std::string>();
-  app->add_option("FILE", *file, "File")->required();
-  return {app, [file, describe_file](const CommandContext& context) {
-            const Json json = describe_file(*file);
+  struct Arguments {
+    std::string file, unit;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  app->add_option("FILE", arguments->file, "File")->required();
+  if (has_unit) add_unit(*app, arguments->unit);
+  return {app, [arguments, describe_file](const CommandContext& context) {
+            const Json json = describe_file(arguments->file, arguments->unit);
             context.print(json, in_words(json));
             return ExitStatus::Done;
           }};
@@ -218,14 +234,14 @@ Command describing_command(CLI::App& program, const char* name, const char* help
 Command add_info(CLI::App& program) {
   return describing_command(
       program, "info",
-      "What a file is: surface, mesh, BSDF, measured BRDF or job; size, spacing, units, range, provenance",
+      "What a file is: surface, mesh, part, BSDF, measured BRDF or job; size, spacing, units, range, provenance", true,
       describe_any);
 }
 
 Command add_job(CLI::App& program) {
   return describing_command(
       program, "job", "Check a layer archive (.uvj) whole (layers, sizes, bit depth, exposures, hashes) and sum it up",
-      [](const std::filesystem::path& path) { return describe(read_uvj(path)); });
+      false, [](const std::filesystem::path& path, const std::string&) { return describe(read_uvj(path)); });
 }
 
 }  // namespace mezzotint

@@ -30,10 +30,10 @@ extern "C" void ask_to_stop(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
-constexpr AddCommand commands[] = {add_run,     add_design,     add_info,       add_convert,     add_measure,
-                                   add_correct, add_roughness,  add_synthesize, add_texture_fit, add_mesh,
-                                   add_bsdf,    add_bsdf_table, add_job,        add_print,       add_validate,
-                                   add_chart,   add_gamut};
+constexpr AddCommand commands[] = {add_run,      add_design,     add_info,       add_convert,     add_measure,
+                                   add_correct,  add_roughness,  add_synthesize, add_texture_fit, add_mesh,
+                                   add_bsdf,     add_bsdf_table, add_job,        add_print,       add_repair,
+                                   add_validate, add_chart,      add_gamut};
 
 void add_common_options(CLI::App& app, CommonOptions& common) {
   app.add_flag("--json", common.json, "One JSON object on stdout; progress as JSON lines on stderr");
