@@ -167,6 +167,10 @@ TEST(Repair, BodiesMayShareAnEdge) {
   const RepairedPart part = repair_part(shared);
   expect_solid(part, 2.0);
   EXPECT_FALSE(part.summary.changed());
+  for (std::size_t k = 12; k < 24; ++k) std::swap(shared.triangles[k][0], shared.triangles[k][1]);
+  const RepairedPart turned = repair_part(shared);
+  expect_solid(turned, 2.0);
+  EXPECT_EQ(turned.summary.shells_turned, 1U);
 }
 
 TEST(Repair, ALooseTriangleIsLeftOutBesideASolid) {
