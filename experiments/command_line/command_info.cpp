@@ -6,13 +6,9 @@
 #include <CLI/CLI.hpp>
 
 #include "experiments/command_line/command.h"
-<<<<<<< HEAD
 #include "experiments/command_line/job_description.h"
 #include "experiments/command_line/json_words.h"
-=======
 #include "experiments/command_line/part_arguments.h"
-#include "fabrication/job/job.h"
->>>>>>> part
 #include "forward/base/quantity.h"
 #include "forward/bsdf_table/bsdf_table_file.h"
 #include "forward/optics/bsdf.h"
@@ -154,10 +150,6 @@ bool begins_with(const std::filesystem::path& path, std::string_view magic) {
   return stream && head == magic;
 }
 
-<<<<<<< HEAD
-Json describe_any(const std::filesystem::path& path, const Progress& progress) {
-  if (path.extension() == ".uvj" || path.extension() == ".sl1") return describe_job(path, progress);
-=======
 // A mesh may be a piece of relief or a part: both are said, for 3MF the part alone.
 Json describe_mesh(const std::filesystem::path& path, std::optional<Length> unit) {
   const PartFile part = read_part(path, {.unit = unit});
@@ -168,11 +160,10 @@ Json describe_mesh(const std::filesystem::path& path, std::optional<Length> unit
   return json;
 }
 
-Json describe_any(const std::filesystem::path& path, const std::string& unit) {
+Json describe_any(const std::filesystem::path& path, const std::string& unit, const Progress& progress) {
   if (is_part_path(path)) return describe_mesh(path, unit_named(unit));
   require(unit.empty(), "--unit is for meshes (.obj, .ply, .stl, .3mf)");
-  if (path.extension() == ".uvj") return describe(read_uvj(path));
->>>>>>> part
+  if (path.extension() == ".uvj" || path.extension() == ".sl1") return describe_job(path, progress);
   // An OpenEXR file is a relief where it has a sidecar, else a BSDF.
   if (begins_with(path, "\x76\x2f\x31\x01") && !has_sidecar(path)) {
     return is_bsdf_table(path) ? describe(read_bsdf_table(path)) : describe(read_channels_exr(path));
@@ -187,63 +178,21 @@ Json describe_any(const std::filesystem::path& path, const std::string& unit) {
 
 }  // namespace
 
-<<<<<<< HEAD
 Command add_info(CLI::App& program) {
   auto* app = program.add_subcommand(
-      "info", "What a file is: surface, mesh, BSDF, measured BRDF or job; size, spacing, units, range, provenance");
-  auto file = std::make_shared<std::string>();
-  app->add_option("FILE", *file, "File")->required();
-  return {app, [file](const CommandContext& context) {
-            const Json json = describe_any(*file, context.progress);
-=======
-std::string in_words(const Json& json) {
-  std::string text;
-  for (const auto& [key, value] : json.items()) {
-    const bool is_list = value.is_object() && !value.contains("value");
-    if (!is_list) {
-      if (value_in_words(value).empty()) continue;
-      text += fmt::format("{:<18} {}\n", key, value_in_words(value));
-      continue;
-    }
-    for (const auto& [name, entry] : value.items()) text += fmt::format("  {:<22} {}\n", name, value_in_words(entry));
-  }
-  if (!text.empty()) text.pop_back();
-  return text;
-}
-
-Command describing_command(CLI::App& program, const char* name, const char* help, bool has_unit,
-                           Json (*describe_file)(const std::filesystem::path&, const std::string& unit)) {
-  auto* app = program.add_subcommand(name, help);
+      "info",
+      "What a file is: surface, mesh, part, BSDF, measured BRDF or job; size, spacing, units, range, provenance");
   struct Arguments {
     std::string file, unit;
   };
   auto arguments = std::make_shared<Arguments>();
   app->add_option("FILE", arguments->file, "File")->required();
-  if (has_unit) add_unit(*app, arguments->unit);
-  return {app, [arguments, describe_file](const CommandContext& context) {
-            const Json json = describe_file(arguments->file, arguments->unit);
->>>>>>> part
+  add_unit(*app, arguments->unit);
+  return {app, [arguments](const CommandContext& context) {
+            const Json json = describe_any(arguments->file, arguments->unit, context.progress);
             context.print(json, in_words(json));
             return ExitStatus::Done;
           }};
 }
 
-<<<<<<< HEAD
-=======
-}  // namespace
-
-Command add_info(CLI::App& program) {
-  return describing_command(
-      program, "info",
-      "What a file is: surface, mesh, part, BSDF, measured BRDF or job; size, spacing, units, range, provenance", true,
-      describe_any);
-}
-
-Command add_job(CLI::App& program) {
-  return describing_command(
-      program, "job", "Check a layer archive (.uvj) whole (layers, sizes, bit depth, exposures, hashes) and sum it up",
-      false, [](const std::filesystem::path& path, const std::string&) { return describe(read_uvj(path)); });
-}
-
->>>>>>> part
 }  // namespace mezzotint

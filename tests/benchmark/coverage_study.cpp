@@ -1,6 +1,8 @@
 // Error against time of a layer's coverage: exact, and by N × N samples. A gear of 10.4 mm in one layer of 2560 × 1600
 // pixels, at 16 places of the pixel grid; errors are the root mean square over the pixels that its outline crosses,
 // against the outline cut to each pixel, in gray levels of 255.
+//
+//   coverage_study [FIGURE.svg]
 
 #include <cmath>
 #include <map>
@@ -8,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "fabrication/slicing/slab_raster.h"
+#include "forward/base/file_output.h"
 #include "measure.h"
 #include "tests/fabrication/slicing/shapes.h"
 
@@ -71,7 +74,52 @@ std::map<std::pair<std::size_t, std::size_t>, double> partly_covered(const test:
   return areas;
 }
 
-void study() {
+struct Point {
+  std::string name;
+  double seconds, error, largest;
+};
+
+// Both axes logarithmic: 0.1 to 10 ms, 1e-6 to 100 gray levels.
+std::string figure(const std::vector<Point>& points) {
+  constexpr double left = 70.0, top = 40.0, width = 420.0, height = 300.0;
+  const auto x = [&](double ms) { return left + width * (std::log10(ms) + 1.0) / 2.0; };
+  const auto y = [&](double levels) { return top + height * (2.0 - std::log10(levels)) / 8.0; };
+  std::string svg =
+      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 560 400' font-family='sans-serif' font-size='12'>\n"
+      "<rect width='560' height='400' fill='white'/>\n"
+      "<text x='70' y='22' font-size='14'>Coverage of a layer: error against time</text>\n";
+  for (const double ms : {0.1, 1.0, 10.0}) {
+    svg +=
+        fmt::format("<path d='M{0} {1}V{2}' stroke='#ddd'/><text x='{0}' y='{3}' text-anchor='middle'>{4:g}</text>\n",
+                    x(ms), top, top + height, top + height + 18.0, ms);
+  }
+  for (int decade = -6; decade <= 2; decade += 2) {
+    const double at = y(std::pow(10.0, decade));
+    svg += fmt::format("<path d='M{0} {1}H{2}' stroke='#ddd'/><text x='{3}' y='{4}' text-anchor='end'>1e{5}</text>\n",
+                       left, at, left + width, left - 6.0, at + 4.0, decade);
+  }
+  svg += fmt::format(
+      "<path d='M{0} {1}H{2}' stroke='#999' stroke-dasharray='4 3'/><text x='{3}' y='{4}' fill='#666'>half a level of "
+      "8 "
+      "bits</text>\n",
+      left, y(0.5), left + width, left + 6.0, y(0.5) - 5.0);
+  for (const Point& point : points) {
+    const bool exact = point.name == "exact";
+    svg += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='4.5' fill='{}'/><text x='{:.1f}' y='{:.1f}'>{}</text>\n",
+                       x(1e3 * point.seconds), y(point.error), exact ? "#d55e00" : "#0072b2",
+                       x(1e3 * point.seconds) + 8.0, y(point.error) + 4.0, point.name);
+  }
+  svg += fmt::format("<text x='{}' y='{}' text-anchor='middle'>CPU time of a layer, ms</text>\n", left + width / 2.0,
+                     top + height + 40.0);
+  svg += fmt::format(
+      "<text transform='translate(20 {}) rotate(-90)' text-anchor='middle'>RMS error of rim pixels, gray "
+      "levels</text>\n"
+      "</svg>\n",
+      top + height / 2.0);
+  return svg;
+}
+
+std::vector<Point> study() {
   fmt::print("{:>10} {:>12} {:>14} {:>14}\n", "samples", "ms a layer", "RMS, levels", "largest, levels");
   std::map<int, std::vector<double>> squares, largest;
   std::map<int, double> seconds;
@@ -95,15 +143,22 @@ void study() {
       if (place == 0) seconds[n] = seconds_a_layer(triangles, raster);
     }
   }
+  std::vector<Point> points;
   for (const auto& [n, all] : squares) {
     double mean = 0.0;
     for (const double square : all) mean += square / static_cast<double>(all.size());
-    fmt::print("{:>10} {:12.3f} {:14.5f} {:14.5f}\n", n == 0 ? "exact" : fmt::format("{0} x {0}", n), 1e3 * seconds[n],
-               std::sqrt(mean), *std::max_element(largest[n].begin(), largest[n].end()));
+    points.push_back({n == 0 ? "exact" : fmt::format("{0} x {0}", n), seconds[n], std::sqrt(mean),
+                      *std::max_element(largest[n].begin(), largest[n].end())});
+    fmt::print("{:>10} {:12.3f} {:14.5f} {:14.5f}\n", points.back().name, 1e3 * points.back().seconds,
+               points.back().error, points.back().largest);
   }
+  return points;
 }
 
 }  // namespace
 }  // namespace mezzotint::benchmark
 
-int main() { mezzotint::benchmark::study(); }
+int main(int count, char** arguments) {
+  const auto points = mezzotint::benchmark::study();
+  if (count > 1) mezzotint::write_file(arguments[1], mezzotint::benchmark::figure(points));
+}
