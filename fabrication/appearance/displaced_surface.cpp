@@ -157,60 +157,26 @@ private:
     return high + reach <= low_ || low - reach >= high_;
   }
 
-  [[nodiscard]] bool is_long(const Corner& a, const Corner& b) const {
-    return (a.place_mm - b.place_mm).squaredNorm() > parts_.longest_square_mm2;
-  }
-
+  // Halves the longest side until none is too long (Rivara 1984): whatever the order, a side ends in the same halves
+  // from both of its triangles, and slivers do not stay slivers.
   void divide(const Piece& piece) {
     if (outside(piece)) return;
-    std::array<bool, 3> split{};
-    int count = 0;
+    std::size_t longest = 0;
+    std::array<double, 3> squares{};
     for (std::size_t k = 0; k < 3; ++k) {
-      split.at(k) = is_long(piece.corners.at(k), piece.corners.at((k + 1) % 3));
-      count += split.at(k) ? 1 : 0;
+      squares.at(k) = (piece.corners.at(k).place_mm - piece.corners.at((k + 1) % 3).place_mm).squaredNorm();
+      if (squares.at(k) > squares.at(longest)) longest = k;
     }
-    if (count == 0) return emit_({piece.corners[0].moved, piece.corners[1].moved, piece.corners[2].moved});
-    std::array<Corner, 3> middles;
-    std::array<Side, 3> first, second;  // the halves of the sides
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (!split.at(k)) continue;
-      const Side& side = piece.sides.at(k);
-      Vector3d offset;
-      middles.at(k) = middle(piece.corners.at(k), piece.corners.at((k + 1) % 3), side, offset);
-      first.at(k) = {side.edge, side.crease, side.from, offset};
-      second.at(k) = {side.edge, side.crease, offset, side.to};
-    }
-    if (count == 3) return into_four(piece, middles, first, second);
-    // From now on the first side is split; of two, the second is too.
-    std::size_t k = 0;
-    while (!split.at(k) || (count == 2 && !split.at((k + 1) % 3))) ++k;
-    if (count == 1) return into_two(piece, k, middles.at(k), first.at(k), second.at(k));
-    into_three(piece, k, middles, first, second);
-  }
-
-  void into_four(const Piece& piece, const std::array<Corner, 3>& m, const std::array<Side, 3>& first,
-                 const std::array<Side, 3>& second) {
+    if (!(squares.at(longest) > parts_.longest_square_mm2))
+      return emit_({piece.corners[0].moved, piece.corners[1].moved, piece.corners[2].moved});
+    const std::size_t next = (longest + 1) % 3, last = (longest + 2) % 3;
+    const Side& side = piece.sides.at(longest);
+    Vector3d offset;
+    const Corner between = middle(piece.corners.at(longest), piece.corners.at(next), side, offset);
+    const Side first{side.edge, side.crease, side.from, offset}, second{side.edge, side.crease, offset, side.to};
     const Side inner;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t before = (k + 2) % 3;
-      divide({{piece.corners.at(k), m.at(k), m.at(before)}, {first.at(k), inner, second.at(before)}});
-    }
-    divide({m, {inner, inner, inner}});
-  }
-  void into_two(const Piece& piece, std::size_t k, const Corner& m, const Side& first, const Side& second) {
-    const std::size_t b = (k + 1) % 3, c = (k + 2) % 3;
-    const Side inner;
-    divide({{piece.corners.at(k), m, piece.corners.at(c)}, {first, inner, piece.sides.at(c)}});
-    divide({{m, piece.corners.at(b), piece.corners.at(c)}, {second, piece.sides.at(b), inner}});
-  }
-  // Sides k and k + 1 are split, which meet at corner b.
-  void into_three(const Piece& piece, std::size_t k, const std::array<Corner, 3>& m, const std::array<Side, 3>& first,
-                  const std::array<Side, 3>& second) {
-    const std::size_t b = (k + 1) % 3, c = (k + 2) % 3;
-    const Side inner;
-    divide({{m.at(k), piece.corners.at(b), m.at(b)}, {second.at(k), first.at(b), inner}});
-    divide({{piece.corners.at(k), m.at(k), m.at(b)}, {first.at(k), inner, inner}});
-    divide({{piece.corners.at(k), m.at(b), piece.corners.at(c)}, {inner, second.at(b), piece.sides.at(c)}});
+    divide({{piece.corners.at(longest), between, piece.corners.at(last)}, {first, inner, piece.sides.at(last)}});
+    divide({{between, piece.corners.at(next), piece.corners.at(last)}, {second, piece.sides.at(next), inner}});
   }
 
   const PartsType& parts_;
