@@ -14,11 +14,8 @@ namespace mezzotint {
 
 namespace {
 
-// Pixels a side of what is solved at once, and how far a tile looks beyond its own pixels: corrections of corrections
-// die out with the blur.
-constexpr std::size_t tile_side = 224;
+// How far a tile looks beyond its own pixels at least: corrections of corrections die out with the blur.
 constexpr std::size_t least_halo = 8;
-constexpr std::size_t largest_whole = 512 * 512;
 
 struct Task {
   const HeightField& wanted;
@@ -46,6 +43,7 @@ Task make_task(const HeightField& wanted, const PrinterProfile& profile, const P
   require_valid(profile);
   require(process.subsamples >= 1 && process.subsamples <= 16, "subsamples must be within 1 and 16");
   require(options.tolerance > Length{}, "the tolerance of a corrected pixel must be positive");
+  require(options.tile_pixels >= 16, "a tile of a proximity correction needs 16 pixels a side");
   const double ratio = profile.pixel_pitch / wanted.grid().pitch_x;
   const auto n = static_cast<std::size_t>(std::max(1L, std::lround(ratio)));
   const bool fits = std::abs(ratio - static_cast<double>(n)) < 1e-6 * ratio &&
@@ -66,15 +64,17 @@ Task make_task(const HeightField& wanted, const PrinterProfile& profile, const P
 
 std::vector<Piece> pieces_of(const Task& task) {
   const bool far = task.profile.spread.kernel == PixelSpread::Kernel::Lorentzian;
-  if (far || task.columns * task.rows <= largest_whole)
+  const std::size_t side = task.options.tile_pixels;
+  // What four tiles hold is solved at once.
+  if (far || task.columns * task.rows <= 4 * side * side)
     return {{0, 0, task.columns, task.rows, 0, task.process.surround}};
   const double sigma = task.profile.spread.width / task.profile.pixel_pitch;
   const std::size_t halo = least_halo + static_cast<std::size_t>(std::ceil(16.0 * sigma));
   std::vector<Piece> pieces;
-  for (std::size_t row = 0; row < task.rows; row += tile_side) {
-    for (std::size_t column = 0; column < task.columns; column += tile_side)
-      pieces.push_back({column, row, std::min(tile_side, task.columns - column), std::min(tile_side, task.rows - row),
-                        halo, Surround::Mirror});
+  for (std::size_t row = 0; row < task.rows; row += side) {
+    for (std::size_t column = 0; column < task.columns; column += side)
+      pieces.push_back({column, row, std::min(side, task.columns - column), std::min(side, task.rows - row), halo,
+                        Surround::Mirror});
   }
   return pieces;
 }

@@ -21,6 +21,8 @@ enum class Unreached : std::uint8_t {
 struct CorrectionOptions {
   std::size_t steps = 40;                   ///< at most; 0 leaves the gray values as `expose` gives them
   Length tolerance = Length::from_um(0.2);  ///< of a pixel's RMS error, for the map
+  /// Side of a tile of a big picture, 16 …; small ones leave out more of what is uniform, and pay more for their halos.
+  std::size_t tile_pixels = 224;
 };
 
 /// Gray values that print a wanted relief, and what they cannot print of it.
@@ -43,7 +45,8 @@ struct ProximityCorrection {
 /// Method   fixed-point steps in dose: a pixel's dose is multiplied by e^(r/β), r the error of the heights around it,
 ///          each weighted with the share of its light that this pixel gives; without a parameter to tune. They lower
 ///          a quadratic bound of the error (the rows of the shares sum to 1), and are accelerated and restarted as in
-///          Nesterov 1983; O'Donoghue and Candès 2015. For a linear process this is SIRT (Gilbert 1972).
+///          Nesterov 1983 and O'Donoghue and Candès 2015; the best of all is kept. For a linear process this is SIRT
+///          (Gilbert 1972).
 /// Big      pictures are solved in tiles with a halo under a Gaussian, whose reach is short; a few bytes a sample. The
 ///          result has the same bits with any number of threads.
 /// Errors   InvalidInput for missing samples, or a size that is neither of the two.

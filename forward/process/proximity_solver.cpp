@@ -98,12 +98,6 @@ private:
   bool means_;
 };
 
-double rms(std::span<const float> values) {
-  double squares = 0.0;
-  for (const float value : values) squares += static_cast<double>(value) * static_cast<double>(value);
-  return values.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(values.size()));
-}
-
 GrayImage gray_of(const ProximityTile& tile, const DoseScale& scale, std::span<const float> heights_um) {
   GrayImage image{tile.columns, tile.rows, std::vector<float>(heights_um.size())};
   for (std::size_t i = 0; i < heights_um.size(); ++i) image.values[i] = scale.gray(heights_um[i]);
@@ -134,16 +128,55 @@ std::vector<float> first_heights(const ProximityTile& tile, const DoseScale& sca
   return heights;
 }
 
-// The step of every pixel: the mean of the errors that its light reaches, each by this light's share.
-std::vector<float> steps_at(const Process& process, const GrayImage& image) {
-  GrayImage errors = process.light(image);
+// Heights that were tried: the sum of their squared errors, and the step of every pixel, which is the mean of the
+// errors that its light reaches, each by this light's share.
+struct Trial {
+  std::vector<float> heights_um, moves_um;
+  double squares = 0.0;
+};
+
+Trial try_out(const ProximityTile& tile, const Process& process, const DoseScale& scale,
+              std::vector<float> heights_um) {
+  GrayImage errors = process.light(gray_of(tile, scale, heights_um));
   GrayImage share{errors.columns, errors.rows, std::vector<float>(errors.values.size())};
   process.compare(errors, share);
-  for (std::size_t i = 0; i < errors.values.size(); ++i) errors.values[i] *= share.values[i];
-  std::vector<float> steps = process.back(errors);
+  Trial trial{std::move(heights_um), {}, 0.0};
+  for (std::size_t i = 0; i < errors.values.size(); ++i) {
+    trial.squares += static_cast<double>(errors.values[i]) * static_cast<double>(errors.values[i]);
+    errors.values[i] *= share.values[i];
+  }
+  trial.moves_um = process.back(errors);
   const std::vector<float> weights = process.back(share);
-  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = weights[i] > 1e-6F ? steps[i] / weights[i] : 0.0F;
-  return steps;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    float& move = trial.moves_um[i];
+    move = weights[i] > 1e-6F ? move / weights[i] : 0.0F;
+  }
+  return trial;
+}
+
+std::vector<float> moved(const ProximityTile& tile, const DoseScale& scale, const Trial& from, float share) {
+  std::vector<float> to(from.heights_um.size());
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const float height = from.heights_um[i] + share * from.moves_um[i];
+    to[i] = is_dark(tile, i) ? scale.lowest_um : std::clamp(height, scale.lowest_um, scale.highest_um);
+  }
+  return to;
+}
+
+// Goes on from `from` by as much as that came from `before`, times `push`.
+std::vector<float> extrapolated(const std::vector<float>& from, const std::vector<float>& before, float push) {
+  std::vector<float> ahead(from.size());
+  for (std::size_t i = 0; i < from.size(); ++i) ahead[i] = from[i] + push * (from[i] - before[i]);
+  return ahead;
+}
+
+double rms_difference(const std::vector<float>& a, const std::vector<float>& b) {
+  double squares = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double difference = static_cast<double>(a[i]) - static_cast<double>(b[i]);
+    squares += difference * difference;
+  }
+  return std::sqrt(squares / static_cast<double>(a.size()));
 }
 
 }  // namespace
@@ -167,31 +200,29 @@ GrayImage solve_proximity(const ProximityTile& tile, const PrinterProfile& profi
                           std::size_t steps) {
   const Process process(tile, profile, options);
   const DoseScale scale(profile.cure);
-  std::vector<float> heights = first_heights(tile, scale), ahead = heights;
+  Trial best = try_out(tile, process, scale, first_heights(tile, scale));
+  std::vector<float> reached = best.heights_um;
   double momentum = 1.0;
+  float share = 1.0F;
+  std::vector<float> next = moved(tile, scale, best, share), ahead = next;
   for (std::size_t k = 0; k < steps; ++k) {
-    const std::vector<float> moves = steps_at(process, gray_of(tile, scale, ahead));
-    const double next = 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * momentum * momentum));
-    const auto push = static_cast<float>((momentum - 1.0) / next);
-    double against = 0.0;
-    std::vector<float> moved(heights.size());
-    for (std::size_t i = 0; i < heights.size(); ++i) {
-      const float to = std::clamp(ahead[i] + moves[i], scale.lowest_um, scale.highest_um);
-      const float at = is_dark(tile, i) ? scale.lowest_um : to;
-      moved[i] = at - heights[i];
-      against += static_cast<double>(ahead[i] - at) * static_cast<double>(moved[i]);
-      heights[i] = at;
-      ahead[i] = at + push * moved[i];
-    }
-    momentum = next;
-    // The step goes back on the momentum: start anew from here.
-    if (against > 0.0) {
+    Trial trial = try_out(tile, process, scale, ahead);
+    const bool better = trial.squares < best.squares;
+    if (better) {
+      best = std::move(trial);
+    } else {
+      // At steep edges the bound does not hold: back to the best, and more carefully.
+      share *= 0.5F;
       momentum = 1.0;
-      ahead = heights;
     }
-    if (rms(moved) < least_step_um) break;
+    reached = std::move(next);
+    next = moved(tile, scale, best, share);
+    if (rms_difference(next, best.heights_um) < least_step_um) break;
+    const double grown = 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * momentum * momentum));
+    ahead = better ? extrapolated(next, reached, static_cast<float>((momentum - 1.0) / grown)) : next;
+    momentum = grown;
   }
-  return gray_of(tile, scale, heights);
+  return gray_of(tile, scale, best.heights_um);
 }
 
 }  // namespace mezzotint

