@@ -78,6 +78,8 @@ struct SurfaceBuilder {
     surface.corners = mesh.triangles;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) face_normals.push_back(face_normal(surface, t));
     surface.sides.assign(mesh.triangles.size(), {SmoothSurface::none, SmoothSurface::none, SmoothSurface::none});
+    surface.sources.resize(mesh.triangles.size());
+    std::iota(surface.sources.begin(), surface.sources.end(), 0U);
     surface.owners.assign(mesh.vertices_mm.size(), SmoothSurface::none);
   }
 

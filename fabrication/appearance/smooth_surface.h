@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -37,6 +38,7 @@ struct SmoothSurface {
   std::vector<std::array<std::uint32_t, 3>> corners;  ///< a triangle's vertices
   std::vector<std::array<std::uint32_t, 3>> nodes;    ///< a triangle's nodes
   std::vector<std::array<std::uint32_t, 3>> sides;    ///< a triangle's edges: from corner k to the next
+  std::vector<std::uint32_t> sources;                 ///< a triangle's triangle of the part
   std::vector<Eigen::Vector3d> normals;               ///< a node
   std::vector<std::uint32_t> node_vertices;           ///< a node's vertex
   std::vector<Edge> edges;
@@ -45,5 +47,10 @@ struct SmoothSurface {
 
 /// @param crease_angle  normals of neighbouring triangles that differ by more make a crease
 [[nodiscard]] SmoothSurface smooth_surface(const PartMesh& mesh, Angle crease_angle);
+
+/// The same surface with every edge halved until none is longer than that; new nodes have the mean of their neighbours'
+/// normals, so that what was smooth stays smooth.
+/// @throws InvalidInput where it would have more than `most_triangles`.
+[[nodiscard]] SmoothSurface refined(SmoothSurface surface, Length longest_edge, std::size_t most_triangles);
 
 }  // namespace mezzotint
