@@ -9,17 +9,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "forward/pattern/line_integral_convolution.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace mezzotint::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Σ weight · (1 − 4 r²)³ over the impulses of the cells around a point.
-float sum_of_impulses(const SolidCorner* corners) {
+// Σ weight · (1 − 4 r²)³ over the impulses of some cells.
+float sum_of_impulses(const SolidCorner* corners, std::size_t count) {
   const hn::CappedTag<float, 16> floats;
   const auto one = hn::Set(floats, 1.0F), four = hn::Set(floats, 4.0F);
   auto sum = hn::Zero(floats);
-  for (int i = 0; i < 8; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const SolidCell& cell = *corners[i].cell;
     const auto px = hn::Set(floats, corners[i].x), py = hn::Set(floats, corners[i].y);
     const auto pz = hn::Set(floats, corners[i].z);
@@ -35,6 +37,30 @@ float sum_of_impulses(const SolidCorner* corners) {
   return hn::GetLane(hn::SumOfLanes(floats, sum));
 }
 
+// The same where r is shorter along a unit vector: r² = d² − shrink·(d·along)².
+float sum_of_long_impulses(const SolidCorner* corners, std::size_t count, const float* along, float shrink) {
+  const hn::CappedTag<float, 16> floats;
+  const auto one = hn::Set(floats, 1.0F), four = hn::Set(floats, 4.0F), less = hn::Set(floats, shrink);
+  const auto ax = hn::Set(floats, along[0]), ay = hn::Set(floats, along[1]), az = hn::Set(floats, along[2]);
+  auto sum = hn::Zero(floats);
+  for (std::size_t i = 0; i < count; ++i) {
+    const SolidCell& cell = *corners[i].cell;
+    const auto px = hn::Set(floats, corners[i].x), py = hn::Set(floats, corners[i].y);
+    const auto pz = hn::Set(floats, corners[i].z);
+    for (std::size_t j = 0; j < CellImpulses::room; j += hn::Lanes(floats)) {
+      const auto dx = hn::Sub(hn::Load(floats, &cell.at_x[j]), px), dy = hn::Sub(hn::Load(floats, &cell.at_y[j]), py);
+      const auto dz = hn::Sub(hn::Load(floats, &cell.at_z[j]), pz);
+      const auto square = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
+      const auto part = hn::Add(hn::Add(hn::Mul(dx, ax), hn::Mul(dy, ay)), hn::Mul(dz, az));
+      const auto near = hn::Sub(square, hn::Mul(less, hn::Mul(part, part)));
+      const auto falloff = hn::Max(hn::Zero(floats), hn::Sub(one, hn::Mul(four, near)));
+      const auto cube = hn::Mul(hn::Mul(falloff, falloff), falloff);
+      sum = hn::Add(sum, hn::Mul(hn::Load(floats, &cell.weight[j]), cube));
+    }
+  }
+  return hn::GetLane(hn::SumOfLanes(floats, sum));
+}
+
 }  // namespace mezzotint::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -43,6 +69,7 @@ HWY_AFTER_NAMESPACE();
 namespace mezzotint {
 
 HWY_EXPORT(sum_of_impulses);
+HWY_EXPORT(sum_of_long_impulses);
 
 namespace {
 
@@ -54,6 +81,22 @@ std::int64_t floor_cell(double coordinate) { return static_cast<std::int64_t>(st
 std::size_t slot_of(std::int64_t x, std::int64_t y, std::int64_t z) {
   const auto mixed = static_cast<std::size_t>((x >> 1) * 73856093 ^ (y >> 1) * 19349663 ^ (z >> 1) * 83492791);
   return (mixed << 3U & (kept_cells - 1)) | static_cast<std::size_t>((x & 1) | (y & 1) << 1 | (z & 1) << 2);
+}
+
+// Whether anything of a cell can be within ½ of a line of that half length about a point.
+bool near_line(const std::array<std::int64_t, 3>& cell, const std::array<double, 3>& at,
+               const std::array<double, 3>& along, double half) {
+  constexpr double reach = 0.5 + 0.8660254037844386;  // to the corner of a cell
+  std::array<double, 3> way{};
+  double part = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    way[i] = static_cast<double>(cell[i]) + 0.5 - at[i];
+    part += way[i] * along[i];
+  }
+  part = std::clamp(part, -half, half);
+  double square = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) square += (way[i] - part * along[i]) * (way[i] - part * along[i]);
+  return square <= reach * reach;
 }
 
 }  // namespace
@@ -89,7 +132,50 @@ double SolidNoise::operator()(double x, double y, double z) {
     // Neighbouring cells have slots of their own, so that none drives out another of the eight.
     corners[i] = {&cell(cx, cy, cz), within(x, cx), within(y, cy), within(z, cz)};
   }
-  return noise_normalisation() * static_cast<double>(HWY_DYNAMIC_DISPATCH(sum_of_impulses)(corners.data()));
+  return noise_normalisation() *
+         static_cast<double>(HWY_DYNAMIC_DISPATCH(sum_of_impulses)(corners.data(), corners.size()));
+}
+
+double SolidNoise::stretched(const std::array<double, 3>& at, const std::array<double, 3>& along, double stretch) {
+  std::array<std::int64_t, 3> low{}, high{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double reach = 0.5 * std::sqrt(1.0 + (stretch * stretch - 1.0) * along[i] * along[i]);
+    low[i] = floor_cell(at[i] - reach);
+    high[i] = floor_cell(at[i] + reach);
+  }
+  const double half = 0.5 * stretch, shrink = 1.0 - 1.0 / (stretch * stretch);
+  const std::array<float, 3> axis = {static_cast<float>(along[0]), static_cast<float>(along[1]),
+                                     static_cast<float>(along[2])};
+  double sum = 0.0;
+  for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+    for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+      for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+        if (!near_line({x, y, z}, at, along, half)) continue;
+        const auto within = [](double p, std::int64_t from) {
+          return static_cast<float>(p - static_cast<double>(from));
+        };
+        const SolidCorner corner{&cell(x, y, z), within(at[0], x), within(at[1], y), within(at[2], z)};
+        sum += static_cast<double>(
+            HWY_DYNAMIC_DISPATCH(sum_of_long_impulses)(&corner, 1, axis.data(), static_cast<float>(shrink)));
+      }
+    }
+  }
+  // As many more impulses reach a point as they are longer.
+  return noise_normalisation() / std::sqrt(stretch) * sum;
+}
+
+double SolidNoise::smeared(const std::array<double, 3>& at, const std::array<double, 3>& along, double length) {
+  if (length != length_) {
+    length_ = length;
+    amplitude_ = smeared_noise(length).amplitude;
+  }
+  const auto steps = static_cast<int>(std::max(1.0, std::ceil(4.0 * length)));
+  double sum = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    const double way = length * ((i + 0.5) / steps - 0.5);
+    sum += (*this)(at[0] + way * along[0], at[1] + way * along[1], at[2] + way * along[2]);
+  }
+  return amplitude_ * sum / steps;
 }
 
 SolidPattern::SolidPattern(const OctaveSum& octaves, Length scale, CellHash hash)
@@ -102,14 +188,25 @@ SolidPattern::SolidPattern(const FractionalBrownianMotion& motion)
 SolidPattern::SolidPattern(const Turbulence& turbulence)
     : SolidPattern(octave_sum(turbulence), turbulence.scale, turbulence.hash) {}
 
-double SolidPattern::gray(double x_um, double y_um, double z_um) {
+template <class Value>
+double SolidPattern::sum_of(const Value& value) {
   double gray = sum_.offset;
   for (std::size_t i = 0; i < noises_.size(); ++i) {
-    const double unit = per_um_ * sum_.octaves[i].frequency;
-    const double value = noises_[i](x_um * unit, y_um * unit, z_um * unit);
-    gray += sum_.octaves[i].weight * (sum_.absolute ? std::abs(value) : value);
+    const double one = value(noises_[i], per_um_ * sum_.octaves[i].frequency);
+    gray += sum_.octaves[i].weight * (sum_.absolute ? std::abs(one) : one);
   }
   return std::clamp(gray, 0.0, 1.0);
+}
+
+double SolidPattern::gray(double x_um, double y_um, double z_um) {
+  return sum_of([&](SolidNoise& noise, double unit) { return noise(x_um * unit, y_um * unit, z_um * unit); });
+}
+
+double SolidPattern::gray_along(const std::array<double, 3>& at_um, const std::array<double, 3>& along,
+                                double stretch) {
+  return sum_of([&](SolidNoise& noise, double unit) {
+    return noise.stretched({at_um[0] * unit, at_um[1] * unit, at_um[2] * unit}, along, stretch);
+  });
 }
 
 }  // namespace mezzotint

@@ -31,16 +31,26 @@ public:
   SolidNoise(std::uint64_t seed, CellHash hash);
   [[nodiscard]] double operator()(double x, double y, double z);
 
+  /// The same with impulses drawn out along a unit vector, `stretch` times as long as wide, and of the same deviation.
+  /// The vector may change from point to point: only what lies around a point counts, so the noise follows it.
+  [[nodiscard]] double stretched(const std::array<double, 3>& at, const std::array<double, 3>& along, double stretch);
+
+  /// The mean along a line of that length about a point (by steps of a quarter of a cell), in the deviation of the
+  /// noise that is not smeared.
+  [[nodiscard]] double smeared(const std::array<double, 3>& at, const std::array<double, 3>& along, double length);
+
 private:
   [[nodiscard]] const SolidCell& cell(std::int64_t x, std::int64_t y, std::int64_t z);
 
   NoiseLattice lattice_;
   std::vector<SolidCell> cells_;
+  // The length that `amplitude_` belongs to.
+  double length_ = -1.0, amplitude_ = 1.0;
 };
 
 /// A noise-like pattern in space: the plane's noise, fBm or turbulence carved out of a block, as on the slides.
 ///
-/// Frame    x, y, z in µm. Its grains are round: `stretch` and `direction` belong to a plane and are not used.
+/// Frame    x, y, z in µm. The pattern's own `stretch` and `direction` belong to a plane and are not used.
 /// Units    gray, height divided by the pattern's height, cut to [0, 1] as in the plane. On z = 0 it is the plane's.
 class SolidPattern {
 public:
@@ -48,9 +58,14 @@ public:
   explicit SolidPattern(const FractionalBrownianMotion& motion);
   explicit SolidPattern(const Turbulence& turbulence);
   [[nodiscard]] double gray(double x_um, double y_um, double z_um);
+  /// With grains drawn out along a unit vector.
+  [[nodiscard]] double gray_along(const std::array<double, 3>& at_um, const std::array<double, 3>& along,
+                                  double stretch);
 
 private:
   SolidPattern(const OctaveSum& octaves, Length scale, CellHash hash);
+  template <class Value>
+  double sum_of(const Value& value);
   OctaveSum sum_;
   double per_um_;
   std::vector<SolidNoise> noises_;

@@ -45,5 +45,50 @@ TEST(SolidNoise, IsThePatternOfThePlaneAtItsFoot) {
   expect_plane(Turbulence{.scale = 150.0_um, .seed = 5});
 }
 
+struct Moments {
+  double deviation, slope_along, slope_across;
+};
+template <class Value>
+Moments moments_of(const Value& value) {
+  constexpr double step = 0.05;
+  const RandomStream stream(9, RandomPurpose::Test);
+  double squares = 0.0, along = 0.0, across = 0.0;
+  constexpr std::uint64_t count = 6000;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const auto u = stream.uniform4(i);
+    const double x = 300.0 * u[0], y = 300.0 * u[1], z = 300.0 * u[2];
+    const double here = value(x, y, z);
+    squares += here * here;
+    along += std::pow((value(x, y + step, z) - here) / step, 2.0);
+    across += std::pow((value(x + step, y, z) - here) / step, 2.0);
+  }
+  return {std::sqrt(squares / count), std::sqrt(along / count), std::sqrt(across / count)};
+}
+
+// Drawn out along y: the deviation stays, slopes along y fall by the stretch.
+TEST(SolidNoise, IsDrawnOut) {
+  SolidNoise noise(3, CellHash::Integer);
+  const Moments round = moments_of([&](double x, double y, double z) { return noise(x, y, z); });
+  EXPECT_NEAR(round.deviation, std::sqrt(noise_variance), 0.03 * round.deviation);
+  for (const double stretch : {1.0, 2.5, 6.0}) {
+    const Moments drawn = moments_of([&](double x, double y, double z) {
+      return noise.stretched({x, y, z}, {0, 1, 0}, stretch);
+    });
+    EXPECT_NEAR(drawn.deviation, round.deviation, 0.06 * round.deviation) << stretch;
+    EXPECT_NEAR(drawn.slope_across, round.slope_across, 0.06 * round.slope_across) << stretch;
+    EXPECT_NEAR(drawn.slope_along, round.slope_along / stretch, 0.06 * round.slope_along / stretch) << stretch;
+  }
+  EXPECT_NEAR(noise.stretched({4.3, 7.7, 1.2}, {0, 0, 1}, 1.0), noise(4.3, 7.7, 1.2), 1e-5);
+}
+
+TEST(SolidNoise, IsSmeared) {
+  SolidNoise noise(3, CellHash::Integer);
+  const Moments lines = moments_of([&](double x, double y, double z) {
+    return noise.smeared({x, y, z}, {0, 1, 0}, 10.0);
+  });
+  EXPECT_NEAR(lines.deviation, std::sqrt(noise_variance), 0.07 * lines.deviation);
+  EXPECT_LT(lines.slope_along, 0.25 * lines.slope_across);
+}
+
 }  // namespace
 }  // namespace mezzotint
