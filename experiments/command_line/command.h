@@ -62,6 +62,7 @@ Command add_texture_fit(CLI::App& program);
 Command add_mesh(CLI::App& program);
 Command add_bsdf(CLI::App& program);
 Command add_bsdf_table(CLI::App& program);
+Command add_slice(CLI::App& program);
 Command add_job(CLI::App& program);
 Command add_print(CLI::App& program);
 Command add_validate(CLI::App& program);

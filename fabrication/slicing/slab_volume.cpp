@@ -14,6 +14,13 @@ struct Polygon {
   std::array<RasterPoint, 24> points;
   std::size_t size = 0;
 
+  Polygon() {}  // the points stay as they are: most are never used
+  Polygon(const Polygon&) = delete;
+  Polygon& operator=(const Polygon& other) {
+    size = other.size;
+    std::copy_n(other.points.begin(), size, points.begin());
+    return *this;
+  }
   void add(const RasterPoint& point) {
     assert(size < points.size());
     points[size++] = point;
@@ -80,12 +87,28 @@ void add_cell(AreaRows& rows, std::size_t row, long column, const Polygon& polyg
   rows.add_split(row, static_cast<std::size_t>(column), area - beyond, beyond);
 }
 
-void add_row(AreaRows& rows, std::size_t row, Polygon& polygon) {
-  const auto [left, right] = range<&RasterPoint::x>(polygon);
-  const auto columns = static_cast<double>(rows.columns());
-  auto column = static_cast<long>(std::floor(std::clamp(left, -1.0, columns)));
-  const double end = std::min(right, columns + 0.5);  // right of the picture nothing is cut any more
+/// How the area as seen along x follows from the outline as seen along y or z: its density at x is `factor` times
+/// the outline's extent there, in z or in y.
+struct Outline {
+  double factor = 0.0;
+  bool along_y = true;  ///< the extent is taken in y (the face is seen along z)
+};
+
+/// Steeper faces lie within two columns of a row, where cutting is as quick and more exact.
+constexpr double most_factor = 16.0;
+
+Outline outline_of(const RasterTriangle& t) {
+  const RasterPoint u = {t[1].x - t[0].x, t[1].y - t[0].y, t[1].z - t[0].z};
+  const RasterPoint v = {t[2].x - t[0].x, t[2].y - t[0].y, t[2].z - t[0].z};
+  const double normal_x = u.y * v.z - u.z * v.y, normal_y = u.z * v.x - u.x * v.z, normal_z = u.x * v.y - u.y * v.x;
+  if (std::abs(normal_z) >= std::abs(normal_y)) return {normal_x / normal_z, true};
+  return {-normal_x / normal_y, false};
+}
+
+void add_row_by_cuts(AreaRows& rows, std::size_t row, Polygon& polygon, long first, double right) {
+  const double end = std::min(right, static_cast<double>(rows.columns()) + 0.5);  // beyond nothing is cut any more
   Polygon below;
+  long column = first;
   for (; polygon.size > 2 && static_cast<double>(column + 1) < end; ++column) {
     cut_off<&RasterPoint::x>(polygon, static_cast<double>(column + 1), below);
     if (below.size > 2) add_cell(rows, row, column, below);
@@ -93,7 +116,67 @@ void add_row(AreaRows& rows, std::size_t row, Polygon& polygon) {
   if (polygon.size > 2) add_cell(rows, row, column, polygon);
 }
 
-void add_polygon(AreaRows& rows, Polygon& polygon) {
+/// Area and moment of each column, from the column's left side; double, since edges add much and take it back.
+struct ColumnSums {
+  static constexpr long most = 64;
+  std::array<double, most> area, moment;
+};
+
+// ∫ q dx and ∫ q·(x − column) dx along an edge, column by column.
+void add_edge(ColumnSums& sums, long first, double xa, double qa, double xb, double qb) {
+  if (xa == xb) return;
+  const double sign = xb > xa ? 1.0 : -1.0;
+  if (xb < xa) {
+    std::swap(xa, xb);
+    std::swap(qa, qb);
+  }
+  const double slope = (qb - qa) / (xb - xa);
+  double x = xa, q = qa;
+  for (long column = static_cast<long>(std::floor(xa)); x < xb; ++column) {
+    const auto left = static_cast<double>(column);
+    const double next_x = std::min(left + 1.0, xb);
+    const double next_q = next_x == xb ? qb : qa + slope * (next_x - xa);
+    const double width = sign * (next_x - x), from = x - left, to = next_x - left;
+    const auto at = static_cast<std::size_t>(column - first);
+    sums.area[at] += 0.5 * width * (q + next_q);
+    sums.moment[at] += width / 6.0 * ((2.0 * from + to) * q + (from + 2.0 * to) * next_q);
+    x = next_x;
+    q = next_q;
+  }
+}
+
+// The same without cuts: by Green's theorem the columns follow from the polygon's edges.
+void add_row_by_edges(AreaRows& rows, std::size_t row, const Polygon& polygon, long first, long last,
+                      const Outline& outline) {
+  ColumnSums sums;
+  const auto count = static_cast<std::size_t>(last - first + 1);
+  std::fill_n(sums.area.begin(), count, 0.0);
+  std::fill_n(sums.moment.begin(), count, 0.0);
+  const auto extent = [&](const RasterPoint& p) { return outline.along_y ? p.y - static_cast<double>(row) : p.z; };
+  const RasterPoint* before = &polygon.points[polygon.size - 1];
+  for (std::size_t i = 0; i < polygon.size; ++i) {
+    const RasterPoint& point = polygon.points[i];
+    add_edge(sums, first, before->x, extent(*before), point.x, extent(point));
+    before = &point;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const double area = outline.factor * sums.area[i], left_of = outline.factor * sums.moment[i];
+    rows.add_split(row, static_cast<std::size_t>(first) + i, area - left_of, left_of);
+  }
+}
+
+void add_row(AreaRows& rows, std::size_t row, Polygon& polygon, const Outline& outline) {
+  const auto [left, right] = range<&RasterPoint::x>(polygon);
+  const auto columns = static_cast<double>(rows.columns());
+  const auto first = static_cast<long>(std::floor(std::clamp(left, -1.0, columns)));
+  if (right <= static_cast<double>(first + 1) && first >= 0) return add_cell(rows, row, first, polygon);
+  const bool inside = left >= 0.0 && right < columns && right - left < static_cast<double>(ColumnSums::most - 2);
+  if (inside && std::abs(outline.factor) < most_factor)
+    return add_row_by_edges(rows, row, polygon, first, static_cast<long>(right), outline);
+  add_row_by_cuts(rows, row, polygon, first, right);
+}
+
+void add_polygon(AreaRows& rows, Polygon& polygon, const Outline& outline) {
   Polygon below;
   const auto row_count = static_cast<double>(rows.rows());
   auto [low, high] = range<&RasterPoint::y>(polygon);
@@ -102,12 +185,12 @@ void add_polygon(AreaRows& rows, Polygon& polygon) {
   auto row = static_cast<std::size_t>(std::max(low, 0.0));
   for (; row + 1 < rows.rows() && static_cast<double>(row + 1) < high && polygon.size > 2; ++row) {
     cut_off<&RasterPoint::y>(polygon, static_cast<double>(row + 1), below);
-    if (below.size > 2) add_row(rows, row, below);
+    if (below.size > 2) add_row(rows, row, below, outline);
   }
   if (polygon.size < 3) return;
-  if (high <= static_cast<double>(row + 1)) return add_row(rows, row, polygon);
+  if (high <= static_cast<double>(row + 1)) return add_row(rows, row, polygon, outline);
   cut_off<&RasterPoint::y>(polygon, static_cast<double>(row + 1), below);
-  if (below.size > 2) add_row(rows, row, below);
+  if (below.size > 2) add_row(rows, row, below, outline);
 }
 
 // The common case of fine relief: a triangle within one pixel and one layer.
@@ -139,7 +222,7 @@ void add_volume(AreaRows& rows, const RasterTriangle& triangle) {
     cut_off<&RasterPoint::z>(polygon, 1.0, below);
     polygon = below;
   }
-  if (polygon.size > 2) add_polygon(rows, polygon);
+  if (polygon.size > 2) add_polygon(rows, polygon, outline_of(triangle));
 }
 
 }  // namespace mezzotint
