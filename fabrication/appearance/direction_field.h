@@ -19,7 +19,7 @@ struct FieldGuide {
     Curvature  ///< the direction in which the surface bends most; weak where it bends alike in all directions
   };
   Kind kind = Kind::Axis;
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
   Angle turn;  ///< away from what it follows, counter-clockwise seen from outside
   /// Over about this distance the field smooths what it follows. 0: as it is, wherever it is.
   Length smoothing = Length::from_mm(0.5);
