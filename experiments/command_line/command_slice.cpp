@@ -11,6 +11,7 @@
 #include "fabrication/job/job_file.h"
 #include "fabrication/job/layer_png.h"
 #include "fabrication/part/part_file.h"
+#include "fabrication/repair/repair.h"
 #include "fabrication/slicing/slice.h"
 #include "forward/base/quantity.h"
 
@@ -25,7 +26,7 @@ struct SliceArguments {
   double layer_mm = 0.0, rotate_deg = 0.0;
   std::vector<double> offset_mm = {0.0, 0.0};
   int supersample = 0;
-  bool linear = false;
+  bool linear = false, as_it_is = false;
 };
 
 void add_options(CLI::App& app, SliceArguments& arguments) {
@@ -46,6 +47,7 @@ void add_options(CLI::App& app, SliceArguments& arguments) {
   app.add_option("--supersample", arguments.supersample,
                  "N x N samples a pixel half-way up the layer instead of exact coverage, for comparison")
       ->check(CLI::Range(1, most_supersamples));
+  app.add_flag("--no-repair", arguments.as_it_is, "Slice the triangles as they are; holes and turned ones show");
   app.add_flag("--linear", arguments.linear, "Gray is the coverage, as other slicers do; no cure curve");
 }
 
@@ -72,6 +74,16 @@ Job frame_of(const SliceArguments& arguments, const PrinterProfile& printer, Len
   return frame;
 }
 
+// The triangles to slice; what had to be assumed or mended goes to `notes`.
+PartMesh part_to_slice(const SliceArguments& arguments, std::vector<std::string>& notes) {
+  PartFile file = read_part(arguments.part);
+  notes = std::move(file.notes);
+  if (arguments.as_it_is) return std::move(file.mesh);
+  RepairedPart repaired = repair_part(std::move(file.mesh));
+  for (std::string& sentence : repaired.summary.sentences()) notes.push_back(std::move(sentence));
+  return std::move(repaired.mesh);
+}
+
 // What must be known before the job is printed.
 std::vector<std::string> warnings_of(const SliceSummary& summary, const SliceOptions& options) {
   std::vector<std::string> warnings;
@@ -88,12 +100,12 @@ std::vector<std::string> warnings_of(const SliceSummary& summary, const SliceOpt
   return warnings;
 }
 
-Json to_json(const SliceSummary& summary, const SliceArguments& arguments, const PartFile& part, Length layer) {
+Json to_json(const SliceSummary& summary, const SliceArguments& arguments, const PartMesh& part, Length layer) {
   const double lit = static_cast<double>(std::max<std::uint64_t>(summary.total.lit_pixels, 1));
   return {
       {"written", arguments.output},
       {"format", format_name(job_format(arguments.output))},
-      {"triangles", part.mesh.triangles.size()},
+      {"triangles", part.triangles.size()},
       {"mode", arguments.supersample > 0 ? fmt::format("{0} x {0} samples", arguments.supersample) : arguments.mode},
       {"gray", arguments.linear ? "coverage" : "through the cure curve"},
       {"layer", Quantity{layer.um(), "µm", {}}},
@@ -106,12 +118,12 @@ Json to_json(const SliceSummary& summary, const SliceArguments& arguments, const
       {"open_rows", summary.total.open_rows}};
 }
 
-SliceSummary slice_to_file(const SliceArguments& arguments, const PartFile& part, const PrinterProfile& printer,
+SliceSummary slice_to_file(const SliceArguments& arguments, const PartMesh& part, const PrinterProfile& printer,
                            const SliceOptions& options, const Progress& progress) {
   const Length layer = options.layer.value_or(printer.layer);
   JobWriter writer(frame_of(arguments, printer, layer), arguments.output);
   const SliceSummary summary = slice_part(
-      part.mesh, printer, options, encode_layer_png,
+      part, printer, options, encode_layer_png,
       [&](SlicedLayer&& sliced) {
         writer.add(std::move(sliced.picture), sliced.packed, printer.exposure_s, sliced.top);
       },
@@ -126,9 +138,9 @@ ExitStatus slice(const SliceArguments& arguments, const CommandContext& context)
   const PrinterProfile printer = arguments.printer.empty() ? PrinterProfile{} : read_printer(arguments.printer);
   const SliceOptions options = options_of(arguments);
   (void)job_format(arguments.output);  // complains before the part is read
-  const PartFile part = read_part(arguments.part);
+  std::vector<std::string> warnings;
+  const PartMesh part = part_to_slice(arguments, warnings);
   const SliceSummary summary = slice_to_file(arguments, part, printer, options, context.progress);
-  std::vector<std::string> warnings = part.notes;
   for (std::string& warning : warnings_of(summary, options)) warnings.push_back(std::move(warning));
   Json json = to_json(summary, arguments, part, options.layer.value_or(printer.layer));
   json["seconds"] = Quantity{std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), "s", {}};

@@ -57,13 +57,15 @@ EdgeTable::EdgeTable(const PartMesh& mesh) {
     std::sort(sides_.begin() + begins_[low], sides_.begin() + begins_[low + 1], begin_with);
 }
 
-Shells find_shells(const PartMesh& mesh, const EdgeTable& edges) {
+Shells find_shells(const PartMesh& mesh, const EdgeTable& edges, Join join) {
   std::vector<std::uint32_t> parents(mesh.triangles.size());
   std::iota(parents.begin(), parents.end(), 0U);
   edges.for_each_edge([&](std::uint32_t, std::span<const EdgeTable::Side> sides) {
-    if (sides.size() != 2) return;
-    const std::uint32_t a = root_of(parents, sides[0].number()), b = root_of(parents, sides[1].number());
-    parents[std::max(a, b)] = std::min(a, b);
+    if (sides.size() != 2 && join == Join::EdgesOfTwo) return;
+    for (std::size_t k = 1; k < sides.size(); ++k) {
+      const std::uint32_t a = root_of(parents, sides[k - 1].number()), b = root_of(parents, sides[k].number());
+      parents[std::max(a, b)] = std::min(a, b);
+    }
   });
   Shells shells;
   shells.of_triangle.assign(mesh.triangles.size(), Shells::none);

@@ -41,12 +41,15 @@ private:
   std::vector<Side> sides_;
 };
 
-/// Which shell each triangle is in: pieces that hold together through edges of exactly two triangles.
+/// What triangles hold together through.
+enum class Join { EdgesOfTwo, AnyEdge };
+
+/// Which shell each triangle is in: pieces that hold together through edges, of exactly two triangles or of any number.
 struct Shells {
   static constexpr std::uint32_t none = 0xFFFFFFFFU;  ///< of a collapsed triangle
   std::vector<std::uint32_t> of_triangle;
   std::uint32_t count = 0;
 };
-[[nodiscard]] Shells find_shells(const PartMesh& mesh, const EdgeTable& edges);
+[[nodiscard]] Shells find_shells(const PartMesh& mesh, const EdgeTable& edges, Join join = Join::EdgesOfTwo);
 
 }  // namespace mezzotint

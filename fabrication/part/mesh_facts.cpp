@@ -25,6 +25,9 @@ private:
 
 void count_edges(const EdgeTable& edges, MeshFacts& facts) {
   edges.for_each_edge([&](std::uint32_t, std::span<const EdgeTable::Side> sides) {
+    std::size_t down = 0;
+    for (const EdgeTable::Side side : sides) down += side.walks_down() ? 1 : 0;
+    if (2 * down != sides.size()) ++facts.unbalanced_edges;
     if (sides.size() == 1)
       ++facts.boundary_edges;
     else if (sides.size() > 2)
@@ -89,7 +92,7 @@ MeshFacts mesh_facts(const PartMesh& mesh, const EdgeTable& edges, const Shells&
   find_box(mesh, facts);
   std::array<double, 3> origin{};
   // Far from the origin, large tetrahedra would cancel; only of a closed surface does the origin not matter.
-  if (facts.watertight())
+  if (facts.closed())
     for (std::size_t axis = 0; axis < 3; ++axis) origin[axis] = 0.5 * (facts.low_mm[axis] + facts.high_mm[axis]);
   measure(mesh, origin, facts);
   return facts;

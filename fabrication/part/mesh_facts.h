@@ -23,8 +23,11 @@ struct MeshFacts {
   std::size_t boundary_edges = 0;      ///< one triangle
   std::size_t non_manifold_edges = 0;  ///< more than two
   std::size_t inconsistent_edges = 0;  ///< two triangles that walk it in the same direction: one of them is inside out
+  std::size_t unbalanced_edges = 0;    ///< as many triangles walk it one way as the other: not so
   std::size_t degenerate_triangles = 0;  ///< without area to the rounding of a double
 
+  /// Bounds a volume: what a slicer needs. Bodies may share edges.
+  [[nodiscard]] bool closed() const { return triangles > 0 && unbalanced_edges == 0; }
   /// Closed, and every edge between two triangles that agree on the outside.
   [[nodiscard]] bool watertight() const {
     return triangles > 0 && boundary_edges == 0 && non_manifold_edges == 0 && inconsistent_edges == 0;
