@@ -8,6 +8,7 @@
 
 #include "experiments/command_line/program.h"
 #include "experiments/command_line/program_names.h"
+#include "experiments/command_line/slice_appearance.h"
 
 // The program that a user starts. It has the commands that must start at once, and becomes the program with all
 // commands for everything else: that one loads some 250 libraries for pictures of all formats, which alone takes 0.2 s
@@ -18,6 +19,17 @@ namespace mezzotint {
 namespace {
 
 constexpr std::string_view own_commands[] = {"slice", "job"};
+
+// Whether the command is one of this program's, and asks for nothing that the other one alone can read.
+bool is_own(int count, char** arguments) {
+  if (count < 2) return false;
+  const std::string_view command = arguments[1];
+  if (std::find(std::begin(own_commands), std::end(own_commands), command) == std::end(own_commands)) return false;
+  return std::none_of(arguments + 2, arguments + count, [](std::string_view argument) {
+    return std::any_of(std::begin(appearance_options), std::end(appearance_options),
+                       [argument](std::string_view option) { return argument.starts_with(option); });
+  });
+}
 
 int become_all_commands(char** arguments) {
   std::error_code problem;
@@ -36,11 +48,11 @@ std::span<const AddCommand> command_table() {
   return commands;
 }
 
+ReadAppearance appearance_reader() { return nullptr; }
+
 }  // namespace mezzotint
 
 int main(int count, char** arguments) {
   using namespace mezzotint;
-  const bool is_own = count > 1 && std::find(std::begin(own_commands), std::end(own_commands),
-                                             std::string_view(arguments[1])) != std::end(own_commands);
-  return is_own ? run_program(count, arguments) : become_all_commands(arguments);
+  return is_own(count, arguments) ? run_program(count, arguments) : become_all_commands(arguments);
 }

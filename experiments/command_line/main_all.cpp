@@ -1,4 +1,5 @@
 #include "experiments/command_line/program.h"
+#include "experiments/command_line/slice_appearance.h"
 
 namespace mezzotint {
 
@@ -9,6 +10,8 @@ std::span<const AddCommand> command_table() {
                                             add_validate, add_chart,      add_gamut};
   return commands;
 }
+
+ReadAppearance appearance_reader() { return read_slice_appearance; }
 
 }  // namespace mezzotint
 
