@@ -61,6 +61,43 @@ float sum_of_long_impulses(const SolidCorner* corners, std::size_t count, const 
   return hn::GetLane(hn::SumOfLanes(floats, sum));
 }
 
+// ∫(A − 4u²)³ du from 0.
+template <class V>
+V integral(V a, V u) {
+  const hn::CappedTag<float, 16> floats;
+  const auto w = hn::Mul(u, u);
+  const auto inner = hn::Sub(hn::Mul(hn::Set(floats, 9.6F), a), hn::Mul(hn::Set(floats, 64.0F / 7.0F), w));
+  const auto outer = hn::Sub(hn::Mul(w, inner), hn::Mul(hn::Set(floats, 4.0F), hn::Mul(a, a)));
+  return hn::Mul(u, hn::Add(hn::Mul(a, hn::Mul(a, a)), hn::Mul(w, outer)));
+}
+
+// Σ weight · ∫(1 − 4 r²)³ along a line of that half length about a point: r² = ρ² + u², ρ the impulse's distance from
+// the line and u the way from its foot.
+float sum_of_smeared_impulses(const SolidCorner* corners, std::size_t count, const float* along, float half) {
+  const hn::CappedTag<float, 16> floats;
+  const auto one = hn::Set(floats, 1.0F), four = hn::Set(floats, 4.0F), end = hn::Set(floats, half);
+  const auto ax = hn::Set(floats, along[0]), ay = hn::Set(floats, along[1]), az = hn::Set(floats, along[2]);
+  auto sum = hn::Zero(floats);
+  for (std::size_t i = 0; i < count; ++i) {
+    const SolidCell& cell = *corners[i].cell;
+    const auto px = hn::Set(floats, corners[i].x), py = hn::Set(floats, corners[i].y);
+    const auto pz = hn::Set(floats, corners[i].z);
+    for (std::size_t j = 0; j < CellImpulses::room; j += hn::Lanes(floats)) {
+      const auto dx = hn::Sub(hn::Load(floats, &cell.at_x[j]), px), dy = hn::Sub(hn::Load(floats, &cell.at_y[j]), py);
+      const auto dz = hn::Sub(hn::Load(floats, &cell.at_z[j]), pz);
+      const auto square = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
+      const auto foot = hn::Add(hn::Add(hn::Mul(dx, ax), hn::Mul(dy, ay)), hn::Mul(dz, az));
+      const auto a = hn::Max(hn::Zero(floats), hn::Sub(one, hn::Mul(four, hn::Sub(square, hn::Mul(foot, foot)))));
+      const auto reach = hn::Mul(hn::Set(floats, 0.5F), hn::Sqrt(a));
+      const auto low = hn::Max(hn::Neg(reach), hn::Sub(hn::Neg(end), foot));
+      const auto high = hn::Max(low, hn::Min(reach, hn::Sub(end, foot)));
+      const auto part = hn::Sub(integral(a, high), integral(a, low));
+      sum = hn::Add(sum, hn::Mul(hn::Load(floats, &cell.weight[j]), part));
+    }
+  }
+  return hn::GetLane(hn::SumOfLanes(floats, sum));
+}
+
 }  // namespace mezzotint::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -70,6 +107,7 @@ namespace mezzotint {
 
 HWY_EXPORT(sum_of_impulses);
 HWY_EXPORT(sum_of_long_impulses);
+HWY_EXPORT(sum_of_smeared_impulses);
 
 namespace {
 
@@ -81,6 +119,10 @@ std::int64_t floor_cell(double coordinate) { return static_cast<std::int64_t>(st
 std::size_t slot_of(std::int64_t x, std::int64_t y, std::int64_t z) {
   const auto mixed = static_cast<std::size_t>((x >> 1) * 73856093 ^ (y >> 1) * 19349663 ^ (z >> 1) * 83492791);
   return (mixed << 3U & (kept_cells - 1)) | static_cast<std::size_t>((x & 1) | (y & 1) << 1 | (z & 1) << 2);
+}
+
+std::array<float, 3> floats_of(const std::array<double, 3>& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
 // Whether anything of a cell can be within ½ of a line of that half length about a point.
@@ -136,32 +178,39 @@ double SolidNoise::operator()(double x, double y, double z) {
          static_cast<double>(HWY_DYNAMIC_DISPATCH(sum_of_impulses)(corners.data(), corners.size()));
 }
 
-double SolidNoise::stretched(const std::array<double, 3>& at, const std::array<double, 3>& along, double stretch) {
+template <class Sum>
+double SolidNoise::sum_near_line(const Line& line, const Sum& sum_of) {
   std::array<std::int64_t, 3> low{}, high{};
   for (std::size_t i = 0; i < 3; ++i) {
-    const double reach = 0.5 * std::sqrt(1.0 + (stretch * stretch - 1.0) * along[i] * along[i]);
-    low[i] = floor_cell(at[i] - reach);
-    high[i] = floor_cell(at[i] + reach);
+    low[i] = floor_cell(line.at[i] - line.reach[i]);
+    high[i] = floor_cell(line.at[i] + line.reach[i]);
   }
-  const double half = 0.5 * stretch, shrink = 1.0 - 1.0 / (stretch * stretch);
-  const std::array<float, 3> axis = {static_cast<float>(along[0]), static_cast<float>(along[1]),
-                                     static_cast<float>(along[2])};
+  const auto within = [](double p, std::int64_t from) { return static_cast<float>(p - static_cast<double>(from)); };
   double sum = 0.0;
   for (std::int64_t z = low[2]; z <= high[2]; ++z) {
     for (std::int64_t y = low[1]; y <= high[1]; ++y) {
       for (std::int64_t x = low[0]; x <= high[0]; ++x) {
-        if (!near_line({x, y, z}, at, along, half)) continue;
-        const auto within = [](double p, std::int64_t from) {
-          return static_cast<float>(p - static_cast<double>(from));
-        };
-        const SolidCorner corner{&cell(x, y, z), within(at[0], x), within(at[1], y), within(at[2], z)};
-        sum += static_cast<double>(
-            HWY_DYNAMIC_DISPATCH(sum_of_long_impulses)(&corner, 1, axis.data(), static_cast<float>(shrink)));
+        if (!near_line({x, y, z}, line.at, line.along, line.half)) continue;
+        // One at a time: the next cell may take this one's slot.
+        const SolidCorner corner{&cell(x, y, z), within(line.at[0], x), within(line.at[1], y), within(line.at[2], z)};
+        sum += static_cast<double>(sum_of(corner));
       }
     }
   }
+  return noise_normalisation() * sum;
+}
+
+double SolidNoise::stretched(const std::array<double, 3>& at, const std::array<double, 3>& along, double stretch) {
+  Line line{at, along, {}, 0.5 * stretch};
+  for (std::size_t i = 0; i < 3; ++i)
+    line.reach[i] = 0.5 * std::sqrt(1.0 + (stretch * stretch - 1.0) * along[i] * along[i]);
+  const auto shrink = static_cast<float>(1.0 - 1.0 / (stretch * stretch));
+  const std::array<float, 3> axis = floats_of(along);
+  const double sum = sum_near_line(line, [&](const SolidCorner& corner) {
+    return HWY_DYNAMIC_DISPATCH(sum_of_long_impulses)(&corner, 1, axis.data(), shrink);
+  });
   // As many more impulses reach a point as they are longer.
-  return noise_normalisation() / std::sqrt(stretch) * sum;
+  return sum / std::sqrt(stretch);
 }
 
 double SolidNoise::smeared(const std::array<double, 3>& at, const std::array<double, 3>& along, double length) {
@@ -169,13 +218,14 @@ double SolidNoise::smeared(const std::array<double, 3>& at, const std::array<dou
     length_ = length;
     amplitude_ = smeared_noise(length).amplitude;
   }
-  const auto steps = static_cast<int>(std::max(1.0, std::ceil(4.0 * length)));
-  double sum = 0.0;
-  for (int i = 0; i < steps; ++i) {
-    const double way = length * ((i + 0.5) / steps - 0.5);
-    sum += (*this)(at[0] + way * along[0], at[1] + way * along[1], at[2] + way * along[2]);
-  }
-  return amplitude_ * sum / steps;
+  Line line{at, along, {}, 0.5 * length};
+  for (std::size_t i = 0; i < 3; ++i) line.reach[i] = 0.5 * length * std::abs(along[i]) + 0.5;
+  const std::array<float, 3> axis = floats_of(along);
+  const auto half = static_cast<float>(line.half);
+  const double sum = sum_near_line(line, [&](const SolidCorner& corner) {
+    return HWY_DYNAMIC_DISPATCH(sum_of_smeared_impulses)(&corner, 1, axis.data(), half);
+  });
+  return amplitude_ * sum / length;
 }
 
 SolidPattern::SolidPattern(const OctaveSum& octaves, Length scale, CellHash hash)

@@ -35,11 +35,17 @@ public:
   /// The vector may change from point to point: only what lies around a point counts, so the noise follows it.
   [[nodiscard]] double stretched(const std::array<double, 3>& at, const std::array<double, 3>& along, double stretch);
 
-  /// The mean along a line of that length about a point (by steps of a quarter of a cell), in the deviation of the
-  /// noise that is not smeared.
+  /// The mean along a line of that length about a point, in the deviation of the noise that is not smeared.
   [[nodiscard]] double smeared(const std::array<double, 3>& at, const std::array<double, 3>& along, double length);
 
 private:
+  // A line about a point, and how far around it impulses count: along each axis.
+  struct Line {
+    std::array<double, 3> at, along, reach;
+    double half;
+  };
+  template <class Sum>
+  double sum_near_line(const Line& line, const Sum& sum_of);
   [[nodiscard]] const SolidCell& cell(std::int64_t x, std::int64_t y, std::int64_t z);
 
   NoiseLattice lattice_;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "experiments/configuration/appearance_file.h"
+#include "experiments/configuration/toml_table.h"
 #include "tests/test_data.h"
 
 namespace mezzotint {

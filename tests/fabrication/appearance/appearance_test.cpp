@@ -83,7 +83,8 @@ TEST(Appearance, ALidHasThePlanesRidges) {
   const ClothedPart clothed = clothe(box(1.0, 1.0, 0.5), appearance);
   EXPECT_EQ(clothed.waves.size(), 1U);
   const ReliefProbe probe = clothed.relief.make_probe();
-  const Vector3d wave = Vector3d(std::cos(30.0_deg.radians()), std::sin(30.0_deg.radians()), 0.0);
+  const double steep = Angle(30.0_deg).radians();
+  const Vector3d wave(std::cos(steep), std::sin(steep), 0.0);
   const Vector3d across(-wave.y(), wave.x(), 0.0), from(0.45, 0.4, 0.5);
   const auto at = [&](const Vector3d& place) { return probe(point_at(clothed.surface, place)); };
   for (const double step : {0.01, 0.03}) {

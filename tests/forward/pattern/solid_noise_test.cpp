@@ -87,7 +87,21 @@ TEST(SolidNoise, IsSmeared) {
     return noise.smeared({x, y, z}, {0, 1, 0}, 10.0);
   });
   EXPECT_NEAR(lines.deviation, std::sqrt(noise_variance), 0.07 * lines.deviation);
-  EXPECT_LT(lines.slope_along, 0.25 * lines.slope_across);
+  EXPECT_LT(lines.slope_along, 0.16 * lines.slope_across);  // √2·σ·amplitude/length: 0.09 of 0.64
+  // The mean by many steps; what brings it back to the noise's deviation is the same everywhere.
+  const std::array<double, 3> along = {0.6, -0.48, 0.64};
+  const auto mean_at = [&](double x) {
+    double sum = 0.0;
+    for (int i = 0; i < 2000; ++i) {
+      const double way = 3.0 * ((i + 0.5) / 2000 - 0.5);
+      sum += noise(x + way * along[0], 2.2 + way * along[1], 7.7 + way * along[2]) / 2000;
+    }
+    return sum;
+  };
+  const double amplitude = noise.smeared({1.3, 2.2, 7.7}, along, 3.0) / mean_at(1.3);
+  EXPECT_GT(amplitude, 1.0);
+  for (const double x : {4.1, 5.9, 8.0})
+    EXPECT_NEAR(noise.smeared({x, 2.2, 7.7}, along, 3.0), amplitude * mean_at(x), 2e-5);
 }
 
 }  // namespace
