@@ -4,7 +4,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include <tbb/enumerable_thread_specific.h>
+
+#include "fabrication/appearance/remembering_probe.h"
 #include "forward/base/error.h"
 
 namespace mezzotint {
@@ -53,6 +57,14 @@ struct DisplacedSurface::Parts {
   std::vector<ZRange> ranges;         // a triangle
   std::vector<std::uint32_t> by_low;  // triangles in the order of their lower ends
   double tallest = 0.0;               // layers: the largest range
+  // What a thread has met stays with it from layer to layer; it changes no result.
+  mutable tbb::enumerable_thread_specific<std::optional<RememberingProbe>> probes;
+
+  [[nodiscard]] RememberingProbe& probe() const {
+    std::optional<RememberingProbe>& own = probes.local();
+    if (!own) own.emplace(relief.make_probe());
+    return *own;
+  }
 
   [[nodiscard]] double largest_move_mm() const {
     return std::max(std::abs(relief.lowest.mm()), std::abs(relief.highest.mm()));
@@ -69,8 +81,8 @@ Vector3d at_corner(std::size_t k) { return Vector3d::Unit(static_cast<Eigen::Ind
 template <class PartsType, class Emit>
 class Divider {
 public:
-  Divider(const PartsType& parts, ReliefProbe probe, double low, double high, Emit emit)
-      : parts_(parts), probe_(std::move(probe)), low_(low), high_(high), emit_(std::move(emit)) {}
+  Divider(const PartsType& parts, double low, double high, Emit emit)
+      : parts_(parts), probe_(parts.probe()), low_(low), high_(high), emit_(std::move(emit)) {}
 
   void divide(std::uint32_t triangle) {
     const SmoothSurface& surface = parts_.surface;
@@ -180,7 +192,7 @@ private:
   }
 
   const PartsType& parts_;
-  ReliefProbe probe_;
+  RememberingProbe& probe_;
   double low_, high_;
   Emit emit_;
   std::uint32_t triangle_ = 0;
@@ -189,7 +201,7 @@ private:
 
 template <class PartsType, class Emit>
 Divider<PartsType, Emit> divider(const PartsType& parts, double low, double high, Emit emit) {
-  return {parts, parts.relief.make_probe(), low, high, std::move(emit)};
+  return {parts, low, high, std::move(emit)};
 }
 
 // Micro-triangles by layer, handed on by the piece.
