@@ -3,6 +3,7 @@
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 # After Eigen: CGAL's own way to find Eigen hides its target. Only fabrication/repair includes CGAL.
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
+option(BUILD_TESTING "Build the testing tree." ON)  # or CGAL's files would turn it off in a fresh build folder
 find_package(CGAL 5.5 REQUIRED)
 find_package(embree 3 REQUIRED)
 find_package(NLopt REQUIRED)
@@ -30,6 +31,7 @@ set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRE
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3)
 pkg_check_modules(ZIP REQUIRED IMPORTED_TARGET libzip)
+pkg_check_modules(DEFLATE REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(LIB3MF REQUIRED IMPORTED_TARGET lib3MF)
 pkg_check_modules(TOMLPLUSPLUS REQUIRED IMPORTED_TARGET tomlplusplus)
 pkg_check_modules(NETTLE REQUIRED IMPORTED_TARGET nettle)

@@ -65,6 +65,7 @@ Command add_bsdf_table(CLI::App& program);
 Command add_slice(CLI::App& program);
 Command add_job(CLI::App& program);
 Command add_print(CLI::App& program);
+Command add_repair(CLI::App& program);
 Command add_validate(CLI::App& program);
 Command add_chart(CLI::App& program);
 Command add_gamut(CLI::App& program);

@@ -8,6 +8,7 @@
 #include "experiments/command_line/command.h"
 #include "experiments/command_line/job_description.h"
 #include "experiments/command_line/json_words.h"
+#include "experiments/command_line/part_arguments.h"
 #include "forward/base/quantity.h"
 #include "forward/bsdf_table/bsdf_table_file.h"
 #include "forward/optics/bsdf.h"
@@ -149,13 +150,24 @@ bool begins_with(const std::filesystem::path& path, std::string_view magic) {
   return stream && head == magic;
 }
 
-Json describe_any(const std::filesystem::path& path, const Progress& progress) {
+// A mesh may be a piece of relief or a part: both are said, for 3MF the part alone.
+Json describe_mesh(const std::filesystem::path& path, std::optional<Length> unit) {
+  const PartFile part = read_part(path, {.unit = unit});
+  Json json = is_mesh_path(path) ? describe(read_mesh(path, unit)) : Json{{"format", "mesh, " + part.format}};
+  json["part"] = describe(mesh_facts(part.mesh));
+  if (!part.mesh.group_names.empty()) json["part"]["groups"] = part.mesh.group_names;
+  if (!part.notes.empty()) json["part"]["notes"] = part.notes;
+  return json;
+}
+
+Json describe_any(const std::filesystem::path& path, const std::string& unit, const Progress& progress) {
+  if (is_part_path(path)) return describe_mesh(path, unit_named(unit));
+  require(unit.empty(), "--unit is for meshes (.obj, .ply, .stl, .3mf)");
   if (path.extension() == ".uvj" || path.extension() == ".sl1") return describe_job(path, progress);
   // An OpenEXR file is a relief where it has a sidecar, else a BSDF.
   if (begins_with(path, "\x76\x2f\x31\x01") && !has_sidecar(path)) {
     return is_bsdf_table(path) ? describe(read_bsdf_table(path)) : describe(read_channels_exr(path));
   }
-  if (is_mesh_path(path)) return describe(read_mesh(path));
   if (is_reflectance_file(path)) return describe(read_reflectance(path));
   const SurfaceFile surface = read_surface(path);
   Json json = describe(surface);
@@ -168,11 +180,16 @@ Json describe_any(const std::filesystem::path& path, const Progress& progress) {
 
 Command add_info(CLI::App& program) {
   auto* app = program.add_subcommand(
-      "info", "What a file is: surface, mesh, BSDF, measured BRDF or job; size, spacing, units, range, provenance");
-  auto file = std::make_shared<std::string>();
-  app->add_option("FILE", *file, "File")->required();
-  return {app, [file](const CommandContext& context) {
-            const Json json = describe_any(*file, context.progress);
+      "info",
+      "What a file is: surface, mesh, part, BSDF, measured BRDF or job; size, spacing, units, range, provenance");
+  struct Arguments {
+    std::string file, unit;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  app->add_option("FILE", arguments->file, "File")->required();
+  add_unit(*app, arguments->unit);
+  return {app, [arguments](const CommandContext& context) {
+            const Json json = describe_any(arguments->file, arguments->unit, context.progress);
             context.print(json, in_words(json));
             return ExitStatus::Done;
           }};

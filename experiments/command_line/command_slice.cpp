@@ -9,6 +9,7 @@
 #include "experiments/command_line/command.h"
 #include "experiments/command_line/json_words.h"
 #include "experiments/command_line/option_checks.h"
+#include "experiments/command_line/part_arguments.h"
 #include "experiments/command_line/slice_appearance.h"
 #include "experiments/configuration/printer_file.h"
 #include "fabrication/appearance/slice_clothed.h"
@@ -26,7 +27,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct SliceArguments {
-  std::string part, output, printer, mode = "volume";
+  std::string part, unit, output, printer, mode = "volume";
   double layer_mm = 0.0, rotate_deg = 0.0;
   std::vector<double> offset_mm = {0.0, 0.0};
   int supersample = 0;
@@ -35,7 +36,8 @@ struct SliceArguments {
 };
 
 void add_options(CLI::App& app, SliceArguments& arguments) {
-  app.add_option("PART", arguments.part, "Mesh in mm: STL, OBJ, PLY or 3MF")->required();
+  app.add_option("PART", arguments.part, "Mesh: STL, OBJ, PLY or 3MF")->required();
+  add_unit(app, arguments.unit);
   app.add_option("--output,-o", arguments.output, "Job to write: .uvj, .sl1, or a folder (ends in /)")->required();
   app.add_option("--printer", arguments.printer, "Printer profile (TOML; default: the slides' printer)");
   app.add_option("--layer-mm", arguments.layer_mm, "Layer thickness (default: the profile's)")
@@ -90,7 +92,7 @@ Job frame_of(const SliceArguments& arguments, const PrinterProfile& printer, Len
 
 // The triangles to slice; what had to be assumed or mended goes to `notes`.
 PartMesh part_to_slice(const SliceArguments& arguments, std::vector<std::string>& notes) {
-  PartFile file = read_part(arguments.part);
+  PartFile file = read_part(arguments.part, {.unit = unit_named(arguments.unit)});
   notes = std::move(file.notes);
   if (arguments.as_it_is) return std::move(file.mesh);
   RepairedPart repaired = repair_part(std::move(file.mesh));

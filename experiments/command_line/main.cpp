@@ -1,7 +1,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <string_view>
@@ -18,18 +20,7 @@ namespace mezzotint {
 
 namespace {
 
-constexpr std::string_view own_commands[] = {"slice", "job"};
-
-// Whether the command is one of this program's, and asks for nothing that the other one alone can read.
-bool is_own(int count, char** arguments) {
-  if (count < 2) return false;
-  const std::string_view command = arguments[1];
-  if (std::find(std::begin(own_commands), std::end(own_commands), command) == std::end(own_commands)) return false;
-  return std::none_of(arguments + 2, arguments + count, [](std::string_view argument) {
-    return std::any_of(std::begin(appearance_options), std::end(appearance_options),
-                       [argument](std::string_view option) { return argument.starts_with(option); });
-  });
-}
+constexpr std::string_view own_commands[] = {"slice", "job", "repair"};
 
 int become_all_commands(char** arguments) {
   std::error_code problem;
@@ -41,10 +32,28 @@ int become_all_commands(char** arguments) {
   return static_cast<int>(ExitStatus::Failed);
 }
 
+// Under mpirun or srun the other program speaks for all ranks; this one knows nothing of them.
+bool is_one_of_many() {
+  return std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr || std::getenv("PMI_SIZE") != nullptr ||
+         std::getenv("PMIX_RANK") != nullptr;
+}
+
+bool is_own(std::string_view command) {
+  return std::find(std::begin(own_commands), std::end(own_commands), command) != std::end(own_commands);
+}
+
+// An appearance may hold pictures, which the other program alone can read.
+bool asks_for_appearance(int count, char** arguments) {
+  return std::any_of(arguments, arguments + count, [](std::string_view argument) {
+    return std::any_of(std::begin(appearance_options), std::end(appearance_options),
+                       [argument](std::string_view option) { return argument.starts_with(option); });
+  });
+}
+
 }  // namespace
 
 std::span<const AddCommand> command_table() {
-  static constexpr AddCommand commands[] = {add_slice, add_job};
+  static constexpr AddCommand commands[] = {add_slice, add_job, add_repair};
   return commands;
 }
 
@@ -54,5 +63,6 @@ ReadAppearance appearance_reader() { return nullptr; }
 
 int main(int count, char** arguments) {
   using namespace mezzotint;
-  return is_own(count, arguments) ? run_program(count, arguments) : become_all_commands(arguments);
+  const bool own = count > 1 && is_own(arguments[1]) && !is_one_of_many() && !asks_for_appearance(count, arguments);
+  return own ? run_program(count, arguments) : become_all_commands(arguments);
 }

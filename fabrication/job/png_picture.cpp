@@ -77,6 +77,7 @@ std::string encode_png(std::span<const std::uint8_t> pixels, std::size_t columns
   picture.image.width = static_cast<png_uint_32>(columns);
   picture.image.height = static_cast<png_uint_32>(rows);
   picture.image.format = channels == 1 ? PNG_FORMAT_GRAY : PNG_FORMAT_RGB;
+  picture.image.flags = PNG_IMAGE_FLAG_FAST;  // previews; twice the bytes at a fifth of the time
   std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(picture.image), '\0');
   png_alloc_size_t size = bytes.size();
   if (png_image_write_to_memory(&picture.image, bytes.data(), &size, 0, pixels.data(), 0, nullptr) == 0)

@@ -16,7 +16,7 @@ namespace {
 using Place = std::array<double, 3>;
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// A piece with all triangles that hold together through edges.
+/// A piece of triangles that hold together through edges.
 struct Piece {
   std::vector<std::uint32_t> triangles;
   Place low{}, high{};
@@ -46,8 +46,26 @@ double volume_of(const Piece& piece, const PartMesh& mesh) {
   return six_volumes / 6.0;
 }
 
+// Whether each shell bounds a volume by itself, at the edges that it shares with others too.
+bool are_closed(const Shells& shells, const EdgeTable& edges) {
+  bool closed = true;
+  edges.for_each_edge([&](std::uint32_t, std::span<const EdgeTable::Side> sides) {
+    if (sides.size() == 2) return;
+    for (const EdgeTable::Side side : sides) {
+      int balance = 0;
+      for (const EdgeTable::Side other : sides)
+        if (shells.of_triangle[other.number()] == shells.of_triangle[side.number()])
+          balance += other.walks_down() ? 1 : -1;
+      closed = closed && balance == 0;
+    }
+  });
+  return closed;
+}
+
 std::vector<Piece> pieces_of(const PartMesh& mesh) {
-  const Shells shells = find_shells(mesh, EdgeTable(mesh), Join::AnyEdge);
+  const EdgeTable edges(mesh);
+  Shells shells = find_shells(mesh, edges);
+  if (!are_closed(shells, edges)) shells = find_shells(mesh, edges, Join::AnyEdge);
   std::vector<Piece> pieces(shells.count);
   for (std::uint32_t number = 0; number < mesh.triangles.size(); ++number)
     if (shells.of_triangle[number] != Shells::none) add_to(pieces[shells.of_triangle[number]], mesh, number);

@@ -8,6 +8,13 @@
 
 namespace mezzotint {
 
+/// The largest whole number that is not above x. std::floor is a call where the processor's baseline has no
+/// instruction.
+[[nodiscard]] inline long floor_of(double x) {
+  const auto whole = static_cast<long>(x);
+  return whole - (static_cast<double>(whole) > x ? 1 : 0);
+}
+
 /// Rows of pixels into which signed areas are summed: each entry says by how much the coverage grows from the pixel
 /// before to this one. The running sum along a row is the coverage, so what lies between two faces costs nothing.
 ///

@@ -42,8 +42,8 @@ std::optional<PlaneSegment> cut(const RasterTriangle& triangle) {
 void add_piece(AreaRows& rows, std::size_t row, double x0, double x1, double area) {
   const double left = std::min(x0, x1), right = std::max(x0, x1);
   const auto last_column = static_cast<double>(rows.columns());
-  const long first = static_cast<long>(std::floor(std::clamp(left, -1.0, last_column)));
-  const long last = static_cast<long>(std::floor(std::clamp(right, -1.0, last_column)));
+  const long first = floor_of(std::clamp(left, -1.0, last_column));
+  const long last = floor_of(std::clamp(right, -1.0, last_column));
   if (first == last) return rows.add(row, first, area, 0.5 * (left + right));
   const double per_column = area / (right - left);
   for (long column = first; column <= last; ++column) {
@@ -75,10 +75,10 @@ void add_plane_cut(AreaRows& rows, const RasterTriangle& triangle) {
   double y = begin;
   double x = low.x + slope * (begin - low.y);
   while (y < end) {
-    const double row = std::floor(y);
-    const double next_y = std::min(row + 1.0, end);
+    const auto row = static_cast<std::size_t>(y);
+    const double next_y = std::min(static_cast<double>(row + 1), end);
     const double next_x = next_y == high.y ? high.x : low.x + slope * (next_y - low.y);
-    add_piece(rows, static_cast<std::size_t>(row), x, next_x, sign * (next_y - y));
+    add_piece(rows, row, x, next_x, sign * (next_y - y));
     x = next_x;
     y = next_y;
   }

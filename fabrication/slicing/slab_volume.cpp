@@ -124,25 +124,31 @@ struct ColumnSums {
 
 // ∫ q dx and ∫ q·(x − column) dx along an edge, column by column.
 void add_edge(ColumnSums& sums, long first, double xa, double qa, double xb, double qb) {
-  if (xa == xb) return;
+  if (xa == xb || (qa == 0.0 && qb == 0.0)) return;
   const double sign = xb > xa ? 1.0 : -1.0;
   if (xb < xa) {
     std::swap(xa, xb);
     std::swap(qa, qb);
   }
+  const auto add = [&](long column, double x0, double q0, double x1, double q1) {
+    const auto left = static_cast<double>(column);
+    const double width = sign * (x1 - x0), from = x0 - left, to = x1 - left;
+    const auto at = static_cast<std::size_t>(column - first);
+    sums.area[at] += 0.5 * width * (q0 + q1);
+    sums.moment[at] += width * (1.0 / 6.0) * ((2.0 * from + to) * q0 + (from + 2.0 * to) * q1);
+  };
+  auto column = static_cast<long>(xa);
+  if (xb <= static_cast<double>(column + 1)) return add(column, xa, qa, xb, qb);
   const double slope = (qb - qa) / (xb - xa);
   double x = xa, q = qa;
-  for (long column = static_cast<long>(std::floor(xa)); x < xb; ++column) {
-    const auto left = static_cast<double>(column);
-    const double next_x = std::min(left + 1.0, xb);
-    const double next_q = next_x == xb ? qb : qa + slope * (next_x - xa);
-    const double width = sign * (next_x - x), from = x - left, to = next_x - left;
-    const auto at = static_cast<std::size_t>(column - first);
-    sums.area[at] += 0.5 * width * (q + next_q);
-    sums.moment[at] += width / 6.0 * ((2.0 * from + to) * q + (from + 2.0 * to) * next_q);
+  for (; static_cast<double>(column + 1) < xb; ++column) {
+    const auto next_x = static_cast<double>(column + 1);
+    const double next_q = qa + slope * (next_x - xa);
+    add(column, x, q, next_x, next_q);
     x = next_x;
     q = next_q;
   }
+  add(column, x, q, xb, qb);
 }
 
 // The same without cuts: by Green's theorem the columns follow from the polygon's edges.
@@ -168,7 +174,7 @@ void add_row_by_edges(AreaRows& rows, std::size_t row, const Polygon& polygon, l
 void add_row(AreaRows& rows, std::size_t row, Polygon& polygon, const Outline& outline) {
   const auto [left, right] = range<&RasterPoint::x>(polygon);
   const auto columns = static_cast<double>(rows.columns());
-  const auto first = static_cast<long>(std::floor(std::clamp(left, -1.0, columns)));
+  const auto first = floor_of(std::clamp(left, -1.0, columns));
   if (right <= static_cast<double>(first + 1) && first >= 0) return add_cell(rows, row, first, polygon);
   const bool inside = left >= 0.0 && right < columns && right - left < static_cast<double>(ColumnSums::most - 2);
   if (inside && std::abs(outline.factor) < most_factor)

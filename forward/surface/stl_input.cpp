@@ -20,6 +20,13 @@ std::uint32_t word_at(std::span<const std::byte> bytes, std::size_t at) {
   return value;
 }
 
+VertexWelder::Place place_at(std::span<const std::byte> bytes, std::size_t at) {
+  VertexWelder::Place place{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    place[axis] = double{std::bit_cast<float>(word_at(bytes, at + 4 * axis))};
+  return place;
+}
+
 bool is_finite(const VertexWelder::Place& place) {
   return std::isfinite(place[0]) && std::isfinite(place[1]) && std::isfinite(place[2]);
 }
@@ -39,14 +46,14 @@ RawMesh parse_binary(const std::filesystem::path& path, std::span<const std::byt
   RawMesh mesh{.format = "stl (binary)"};
   VertexWelder welder(count / 2);  // as many as a closed surface has
   mesh.triangles.resize(count);
+  constexpr std::size_t ahead = 8;
   for (std::size_t facet = 0; facet < count; ++facet) {
     const std::size_t begin = header_bytes + facet * facet_bytes;
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      VertexWelder::Place place{};
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        place[axis] = double{std::bit_cast<float>(word_at(bytes, begin + 12 * (corner + 1) + 4 * axis))};
-      if (!is_finite(place)) refuse_vertex(path, "byte " + std::to_string(begin + 12 * (corner + 1)));
-      mesh.triangles[facet][corner] = welder.number(place).value;
+    for (std::size_t corner = 1; corner <= 3; ++corner) {
+      if (facet + ahead < count) welder.prefetch(place_at(bytes, begin + ahead * facet_bytes + 12 * corner));
+      const VertexWelder::Place place = place_at(bytes, begin + 12 * corner);
+      if (!is_finite(place)) refuse_vertex(path, "byte " + std::to_string(begin + 12 * corner));
+      mesh.triangles[facet][corner - 1] = welder.number(place).value;
     }
   }
   mesh.vertices = welder.take_vertices();

@@ -22,6 +22,11 @@ VertexWelder::VertexWelder(std::size_t expected) : slots_(std::bit_ceil(std::max
   vertices_.reserve(expected);
 }
 
+void VertexWelder::prefetch(Place place) const {
+  for (double& coordinate : place) coordinate += 0.0;
+  __builtin_prefetch(&slots_[hash_of(place) & (slots_.size() - 1)]);
+}
+
 VertexWelder::Number VertexWelder::number(Place place) {
   for (double& coordinate : place) coordinate += 0.0;  // −0 is 0
   const std::uint64_t wide = hash_of(place);

@@ -24,6 +24,8 @@ public:
     bool is_new;
   };
   [[nodiscard]] Number number(Place place);
+  /// Fetches what `number` of this place will look at: for the places of some dozen calls ahead.
+  void prefetch(Place place) const;
   [[nodiscard]] const std::vector<Place>& vertices() const { return vertices_; }
   [[nodiscard]] std::vector<Place> take_vertices() { return std::move(vertices_); }
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "forward/base/error.h"
+#include "forward/base/random.h"
 #include "tests/fabrication/part/solids.h"
 
 namespace mezzotint {
@@ -87,10 +88,9 @@ TEST(Repair, NothingCrossesInWhatTouches) {
 }
 
 TEST(Repair, AFoldedNeighbourIsASelfIntersection) {
-  // A tetrahedron whose tip is pulled through its base has no crossing neighbours but a turned volume; a spike that
-  // goes out through another face has.
+  // A corner that goes out through the face opposite; the volume, linear in its place, is still a sixth.
   PartMesh mesh = test::unit_box();
-  mesh.vertices_mm[0] = {0.5, 0.5, 2.0};
+  mesh.vertices_mm[0] = {0.5, 0.5, 1.5};
   EXPECT_GT(repair_part(mesh, {.count_self_intersections = true}).summary.self_intersections.value(), 0U);
 }
 
@@ -167,6 +167,10 @@ TEST(Repair, BodiesMayShareAnEdge) {
   const RepairedPart part = repair_part(shared);
   expect_solid(part, 2.0);
   EXPECT_FALSE(part.summary.changed());
+  for (std::size_t k = 12; k < 24; ++k) std::swap(shared.triangles[k][0], shared.triangles[k][1]);
+  const RepairedPart turned = repair_part(shared);
+  expect_solid(turned, 2.0);
+  EXPECT_EQ(turned.summary.shells_turned, 1U);
 }
 
 TEST(Repair, ALooseTriangleIsLeftOutBesideASolid) {
@@ -199,6 +203,48 @@ TEST(Repair, WhereNothingSensibleCanBeDoneItSaysWhy) {
   EXPECT_NE(refusal(strip).find("one side"), std::string::npos);
   EXPECT_NE(refusal(without(test::torus(3.0, 1.0, 60, 24), 0, 2), {.longest_hole = 3}).find("edges"),
             std::string::npos);
+}
+
+// Triangles lost, turned, doubled, torn off and moved to wrong vertices: closed or refused, and never anything else.
+TEST(Repair, AnyDamageIsMendedOrRefused) {
+  const PartMesh whole = test::torus(3.0, 1.0, 16, 8);
+  int mended = 0;
+  for (std::uint64_t k = 0; k < 200; ++k) {
+    const RandomStream random(k, RandomPurpose::Test);
+    PartMesh mesh = whole;
+    const auto damages = static_cast<std::uint64_t>(1.0 + 30.0 * random.uniform4(0)[0]);
+    for (std::uint64_t n = 1; n <= damages; ++n) {
+      const auto draw = random.uniform4(n);
+      const auto at = static_cast<std::size_t>(draw[0] * static_cast<double>(mesh.triangles.size()));
+      auto& triangle = mesh.triangles[at];
+      const auto vertex = static_cast<std::uint32_t>(draw[1] * static_cast<double>(mesh.vertices_mm.size()));
+      switch (static_cast<int>(draw[2] * 5.0)) {
+        case 0:
+          mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(at));
+          break;
+        case 1:
+          std::swap(triangle[0], triangle[1]);
+          break;
+        case 2:
+          mesh.triangles.push_back(std::array<std::uint32_t, 3>(triangle));
+          break;
+        case 3:
+          mesh.vertices_mm.push_back(std::array<double, 3>(mesh.vertices_mm[triangle[0]]));
+          triangle[0] = static_cast<std::uint32_t>(mesh.vertices_mm.size() - 1);
+          break;
+        default:
+          triangle[2] = vertex;
+      }
+    }
+    try {
+      const RepairedPart part = repair_part(mesh);
+      EXPECT_TRUE(mesh_facts(part.mesh).closed()) << k;
+      EXPECT_GT(part.summary.after.volume_mm3, 0.0) << k;
+      ++mended;
+    } catch (const MethodError&) {
+    }
+  }
+  EXPECT_GT(mended, 50);
 }
 
 }  // namespace

@@ -43,7 +43,8 @@ TEST_F(SharedRepair, EveryMeshIsMendedOrRefusedWithAReason) {
   }
   std::vector<std::string> names;
   for (const auto& [name, reason] : refused) names.push_back(name);
-  EXPECT_EQ(names, (std::vector<std::string>{"ig_degenerated.obj", "tm_notenoughindices.obj", "tm_soup.stl"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"ig_degenerated.obj", "tm_notenoughindices.obj", "tm_polygonfaces.obj",
+                                             "tm_soup.stl"}));
 }
 
 // ADMesh's final volume of all of them is that of the block.

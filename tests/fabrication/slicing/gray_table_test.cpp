@@ -31,7 +31,9 @@ TEST(GrayTable, TakesTheLevelThatCuresNearest) {
     }
     // The inverse of the cure curve, where it does not saturate, within the rounding of a level.
     const double gray = height_to_gray(profile.cure, Length::from_um(wanted_um));
-    if (wanted_um > 0.2 && gray < 1.0) ASSERT_NEAR(255.0 * gray, table.level(coverage), 0.52) << coverage;
+    if (wanted_um > 0.2 && gray < 1.0) {
+      ASSERT_NEAR(255.0 * gray, table.level(coverage), 0.52) << coverage;
+    }
   }
 }
 

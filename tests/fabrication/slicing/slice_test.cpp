@@ -50,8 +50,12 @@ TEST(SlicePart, FillsTheFieldsMiddle) {
       const bool inside = row >= 88 && row < 112 && column >= 125 && column < 175;
       const bool rim = row == 87 || row == 112;  // 25 rows about the middle: half a row on either side
       const bool dark = !inside && !(rim && column >= 125 && column < 175);
-      if (inside) ASSERT_GE(layers[1][row * 300 + column], 200) << column << ", " << row;
-      if (dark) ASSERT_EQ(layers[1][row * 300 + column], 0) << column << ", " << row;
+      if (inside) {
+        ASSERT_GE(layers[1][row * 300 + column], 200) << column << ", " << row;
+      }
+      if (dark) {
+        ASSERT_EQ(layers[1][row * 300 + column], 0) << column << ", " << row;
+      }
     }
   }
 }
@@ -174,8 +178,12 @@ TEST(SlicePart, KeepsReliefOfOnePixel) {
         }
       }
       // A cone of 40 of 50 µm over a pixel: at least a tenth of a pixel's layer in one of the four about it.
-      if (peak) EXPECT_GT(lightest, 0) << r << ", " << c;
-      if (!peak) EXPECT_LT(darkest, slices.layers[9][100 * 300 + 120]) << r << ", " << c;
+      if (peak) {
+        EXPECT_GT(lightest, 0) << r << ", " << c;
+      }
+      if (!peak) {
+        EXPECT_LT(darkest, slices.layers[9][100 * 300 + 120]) << r << ", " << c;
+      }
     }
   }
 }
