@@ -83,6 +83,23 @@ TEST(Appearance, SaysWhatIsWrong) {
   EXPECT_NE(complaint("--linear --proximity-correction").find("--linear"), std::string::npos);
 }
 
+TEST(Expose, ACorrectedPictureHalvesTheErrorOfItsPrint) {
+  const Workplace here;
+  for (const char* name : {"noise", "ridges", "brushed"}) {
+    const std::string file = std::string(MEZZOTINT_SOURCE_DIR) + "/experiments/patterns/" + name + ".toml";
+    const Ending ending = here.mezzotint(words("expose " + file +
+                                               " -o gray.png --proximity-correction --residual left.gwy "
+                                               "--set grid.columns=256 --set grid.rows=256 --json --quiet"));
+    ASSERT_EQ(ending.status, 0) << ending.err;
+    const auto json = nlohmann::json::parse(ending.out);
+    EXPECT_EQ(json.at("columns"), 67);  // 512 µm by 7.54 µm
+    EXPECT_LT(2.0 * json.at("proximity_correction").at("error_after").at("value").get<double>(),
+              json.at("error").at("value").get<double>())
+        << name;
+    EXPECT_TRUE(std::filesystem::exists(here / "gray.png") && std::filesystem::exists(here / "left.gwy"));
+  }
+}
+
 // Neither Ctrl-C nor a disk that fills up leaves a job behind, or a piece of one.
 TEST(Appearance, LeavesNoBrokenJobBehind) {
   const Workplace here;
