@@ -136,14 +136,43 @@ double around(const Eigen::Vector3d& w) {
 }
 
 // Gradient of what is linear in a triangle.
-Vector3d gradient(const std::array<Vector3d, 3>& at, const std::array<double, 3>& values) {
+Vector3d gradient(const std::array<Vector3d, 3>& at, const std::array<float, 3>& values) {
   const Vector3d across = (at[1] - at[0]).cross(at[2] - at[0]);
   Vector3d sum = Vector3d::Zero();
-  for (std::size_t k = 0; k < 3; ++k) sum += values.at(k) * across.cross(at.at((k + 2) % 3) - at.at((k + 1) % 3));
+  for (std::size_t k = 0; k < 3; ++k)
+    sum += static_cast<double>(values.at(k)) * across.cross(at.at((k + 2) % 3) - at.at((k + 1) % 3));
   return sum / std::max(across.squaredNorm(), 1e-300);
 }
 
 double to_nearest(double turns) { return turns - std::round(turns); }
+
+// The nodes' phases, unwrapped along the triangle's sides as the field wants it.
+SurfacePhase::Corners unwrapped(const Waves& waves, const Oriented& triangle, const std::array<std::uint32_t, 3>& nodes,
+                                const Vector& numbers) {
+  std::array<double, 3> own{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto at = 2 * static_cast<Eigen::Index>(nodes.at(k));
+    own.at(k) = triangle.signs.at(k) * std::atan2(numbers[at + 1], numbers[at]) / (2.0 * std::numbers::pi);
+  }
+  const auto step = [&](std::size_t a, std::size_t b) {
+    const double wanted = waves.periods(triangle, a, b);
+    return wanted + to_nearest(own.at(b) - own.at(a) - wanted);
+  };
+  const double second = own[0] + step(0, 1), third = second + step(1, 2);
+  const double left = third + step(2, 0) - own[0];
+  return {{static_cast<float>(own[0]), static_cast<float>(second), static_cast<float>(third)},
+          static_cast<std::int8_t>(std::clamp(std::lround(left), -100L, 100L))};
+}
+
+// Area-weighted mean of squares.
+struct MeanSquare {
+  double squares = 0.0, areas = 0.0;
+  void add(double value, double area) {
+    squares += area * value * value;
+    areas += area;
+  }
+  [[nodiscard]] double root() const { return areas > 0.0 ? std::sqrt(squares / areas) : 0.0; }
+};
 
 }  // namespace
 
@@ -158,34 +187,17 @@ SurfacePhase surface_phase(const SmoothSurface& surface, const std::vector<Vecto
   settle(energy, 1e-2 / (wavelength.mm() * wavelength.mm()), 20, numbers);
 
   SurfacePhase phase;
-  double squares = 0.0, areas = 0.0;
+  MeanSquare error;
   for (std::size_t t = 0; t < surface.corners.size(); ++t) {
     const Oriented triangle = waves.oriented(t);
-    std::array<double, 3> own{}, turns{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto at = 2 * static_cast<Eigen::Index>(surface.nodes[t].at(k));
-      own.at(k) = triangle.signs.at(k) * std::atan2(numbers[at + 1], numbers[at]) / (2.0 * std::numbers::pi);
-    }
-    const auto step = [&](std::size_t a, std::size_t b) {
-      const double wanted = waves.periods(triangle, a, b);
-      return wanted + to_nearest(own.at(b) - own.at(a) - wanted);
-    };
-    turns = {own[0], own[0] + step(0, 1), own[0] + step(0, 1) + step(1, 2)};
-    const double left = turns[2] + step(2, 0) - turns[0];
-    const auto winding = static_cast<std::int8_t>(std::clamp(std::lround(left), -100L, 100L));
-    phase.triangles.push_back(
-        {{static_cast<float>(turns[0]), static_cast<float>(turns[1]), static_cast<float>(turns[2])}, winding});
-    if (winding != 0) {
-      ++phase.figures.defects;
-      continue;
-    }
+    phase.triangles.push_back(unwrapped(waves, triangle, surface.nodes[t], numbers));
+    const SurfacePhase::Corners& corners = phase.triangles.back();
+    if (corners.winding != 0) ++phase.figures.defects;
     const double area = 0.5 * (triangle.at[1] - triangle.at[0]).cross(triangle.at[2] - triangle.at[0]).norm();
-    const double frequency = gradient(triangle.at, turns).norm() * wavelength.mm();
-    if (!(area > 0.0) || !(frequency > 0.0)) continue;
-    squares += area * (1.0 / frequency - 1.0) * (1.0 / frequency - 1.0);
-    areas += area;
+    const double frequency = gradient(triangle.at, corners.turns).norm() * wavelength.mm();
+    if (corners.winding == 0 && area > 0.0 && frequency > 0.0) error.add(1.0 / frequency - 1.0, area);
   }
-  phase.figures.wavelength_error = areas > 0.0 ? std::sqrt(squares / areas) : 0.0;
+  phase.figures.wavelength_error = error.root();
   return phase;
 }
 

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "fabrication/appearance/solid_relief.h"
 #include "forward/base/error.h"
 #include "forward/pattern/pattern_tree.h"
 #include "forward/pattern/solid_noise.h"
@@ -48,15 +49,13 @@ std::vector<Vector3d> wave_directions(const FieldSurface& on, Angle direction) {
 
 template <NoiseLike Kind>
 TangentRelief relief_of(const Kind& kind, const Shared& on) {
+  if (kind.stretch == 1.0) return {solid_relief(kind), {}};
   return {{[kind, on]() -> ReliefProbe {
              auto pattern = std::make_shared<SolidPattern>(kind);
              return [pattern, kind, on](const SurfacePoint& point) {
                const auto at = array_of(1e3 * point.place_mm);
-               const double gray =
-                   kind.stretch == 1.0
-                       ? pattern->gray(at[0], at[1], at[2])
-                       : pattern->gray_along(at, long_direction(*on, point, kind.direction), kind.stretch);
-               return kind.height.um() * gray;
+               return kind.height.um() *
+                      pattern->gray_along(at, long_direction(*on, point, kind.direction), kind.stretch);
              };
            },
            Length{}, kind.height},

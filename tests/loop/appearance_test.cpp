@@ -66,6 +66,19 @@ TEST(Appearance, GrowsThePartByItsRelief) {
   EXPECT_LT(lid.at("relief").at("waves").at(0).at("wavelength_error").at("value"), 0.01);
 }
 
+TEST(Appearance, TakesThePatternOfADesign) {
+  const Workplace here;
+  here.write("box.obj", box);
+  const Ending designed = here.mezzotint(words("design small.toml --out design --quiet"));
+  ASSERT_TRUE(designed.status == 0 || designed.status == 3) << designed.err;
+  const auto pattern = nlohmann::json::parse(here.read("design/design.json")).at("pattern");
+  const double plain = slice(here, "").at("volume").at("value");
+  const auto clothed = slice(here, "--design design");
+  EXPECT_NEAR(clothed.at("relief").at("highest").at("value").get<double>(), pattern.at("height_um").get<double>(),
+              1e-9);
+  EXPECT_GT(clothed.at("volume").at("value").get<double>(), 1.01 * plain);
+}
+
 TEST(Appearance, SaysWhatIsWrong) {
   const Workplace here;
   here.write("box.obj", box);
