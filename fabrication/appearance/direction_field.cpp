@@ -69,6 +69,8 @@ Energy smoothness_energy(const SmoothSurface& surface, const Connection& connect
     }
   }
   energy.smoothness.setFromTriplets(entries.begin(), entries.end());
+  // Nodes of triangles without area are held too.
+  energy.areas.array() += 1e-3 * energy.areas.mean();
   return energy;
 }
 

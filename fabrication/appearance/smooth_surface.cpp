@@ -129,7 +129,9 @@ struct SurfaceBuilder {
     for (std::size_t t = 0; t < surface.corners.size(); ++t)
       for (const std::uint32_t node : surface.nodes[t])
         if (surface.normals[node].squaredNorm() < 1e-12) surface.normals[node] = face_normals[t];
-    for (Vector3d& normal : surface.normals) normal.normalize();
+    // A node of nothing but triangles without area has no normal of its own, and moves nothing that counts.
+    for (Vector3d& normal : surface.normals)
+      normal = normal.squaredNorm() > 0.0 ? Vector3d(normal.normalized()) : Vector3d(Vector3d::UnitZ());
   }
 
   [[nodiscard]] double angle_at(std::uint32_t t, std::uint32_t k) const {

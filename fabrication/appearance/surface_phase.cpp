@@ -99,6 +99,8 @@ Energy wave_energy(const SmoothSurface& surface, const Waves& waves) {
     }
   }
   energy.matrix.setFromTriplets(entries.begin(), entries.end());
+  // Nodes of triangles without area are held too.
+  energy.areas.array() += 1e-3 * energy.areas.mean();
   return energy;
 }
 

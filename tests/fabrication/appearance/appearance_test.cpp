@@ -93,6 +93,21 @@ TEST(Appearance, ALidHasThePlanesRidges) {
   }
 }
 
+// Triangles without area, as slicing without repair may meet them, change nothing.
+TEST(Appearance, TrianglesWithoutAreaDoNoHarm) {
+  PartMesh part = box(1.0, 1.0, 0.5);
+  const auto base = static_cast<std::uint32_t>(part.vertices_mm.size());
+  part.vertices_mm.insert(part.vertices_mm.end(), {{0.2, 0.2, 0.2}, {0.3, 0.2, 0.2}, {0.4, 0.2, 0.2}});
+  part.triangles.push_back({base, base + 1, base + 2});
+  part.triangles.push_back({base, base, base + 1});
+  Appearance appearance;
+  appearance.pattern = Ridges{.wavelength = 200.0_um, .height = 16.0_um};
+  const ClothedPart clothed = clothe(part, appearance);
+  EXPECT_TRUE(std::isfinite(height_at(clothed, {0.55, 0.4, 0.5})));
+  EXPECT_LT(clothed.waves.at(0).wavelength_error, 1e-3);
+  EXPECT_EQ(clothed.waves.at(0).defects, 0U);
+}
+
 TEST(Appearance, RefusesWhatMakesNoSense) {
   const PartMesh part = box(1.0, 1.0, 1.0);
   EXPECT_THROW((void)clothe(part, {}), InvalidInput);
