@@ -60,6 +60,7 @@ Command add_roughness(CLI::App& program);
 Command add_synthesize(CLI::App& program);
 Command add_texture_fit(CLI::App& program);
 Command add_mesh(CLI::App& program);
+Command add_expose(CLI::App& program);
 Command add_bsdf(CLI::App& program);
 Command add_bsdf_table(CLI::App& program);
 Command add_slice(CLI::App& program);
