@@ -14,7 +14,7 @@ constexpr const char* no_pattern = "none";
 Eigen::Vector3d read_axis(TomlTable& table, std::string_view key, const Eigen::Vector3d& fallback) {
   if (!table.has(key)) return fallback;
   const std::vector<double> numbers = table.numbers(key, 3, {-1e6, 1e6});
-  const Eigen::Vector3d axis(numbers[0], numbers[1], numbers[2]);
+  Eigen::Vector3d axis(numbers[0], numbers[1], numbers[2]);
   if (!(axis.norm() > 0.0)) table.complain(key, fmt::format("\"{}\" has no length; [0, 0, 1] points up", key));
   return axis;
 }

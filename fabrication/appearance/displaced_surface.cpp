@@ -213,13 +213,12 @@ public:
   }
   void add(const RasterTriangle& triangle) {
     const auto [low, high] = std::minmax({triangle[0].z, triangle[1].z, triangle[2].z});
-    const double begin = std::floor(low - static_cast<double>(first_)),
-                 end = std::ceil(high - static_cast<double>(first_));
-    const auto count = static_cast<double>(buffers_.size());
-    for (double layer = std::max(begin, 0.0); layer < std::min(end, count); ++layer) {
-      auto& buffer = buffers_[static_cast<std::size_t>(layer)];
-      buffer.push_back(triangle);
-      if (buffer.size() == pieces) flush(static_cast<std::size_t>(layer));
+    const auto count = static_cast<double>(buffers_.size()), from = static_cast<double>(first_);
+    const auto begin = static_cast<std::size_t>(std::clamp(std::floor(low - from), 0.0, count)),
+               end = static_cast<std::size_t>(std::clamp(std::ceil(high - from), 0.0, count));
+    for (std::size_t layer = begin; layer < end; ++layer) {
+      buffers_[layer].push_back(triangle);
+      if (buffers_[layer].size() == pieces) flush(layer);
     }
   }
   void finish() {

@@ -102,7 +102,7 @@ Energy wave_energy(const SmoothSurface& surface, const Waves& waves) {
   // Nodes of triangles without area are held too.
   energy.areas.array() += 1e-3 * energy.areas.mean();
   return energy;
-}
+}  // NOLINT(clang-analyzer-unix.Malloc): Eigen frees it
 
 void make_unit(Vector& numbers) {
   for (Eigen::Index i = 0; i + 1 < numbers.size(); i += 2) {

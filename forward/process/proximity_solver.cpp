@@ -107,7 +107,8 @@ GrayImage gray_of(const ProximityTile& tile, const DoseScale& scale, std::span<c
 std::vector<float> pixel_means(const ProximityTile& tile) {
   const std::size_t pixels = tile.columns * tile.rows;
   if (tile.wanted_um.size() == pixels) return tile.wanted_um;
-  const auto n = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(tile.wanted_um.size() / pixels))));
+  const auto n = static_cast<std::size_t>(
+      std::lround(std::sqrt(static_cast<double>(tile.wanted_um.size()) / static_cast<double>(pixels))));
   std::vector<float> means(pixels, 0.0F);
   for (std::size_t r = 0; r < tile.rows * n; ++r)
     for (std::size_t c = 0; c < tile.columns * n; ++c)
