@@ -68,7 +68,7 @@ struct FreeForm {
 ///          distance, which sees how far light has to go; then from the best four, then two. In every epoch the relief
 ///          is sampled at other places, so that little can hide between samples. The best is chosen by tracing
 ///          quantised prints on fresh grounds, and judged by `verify_design` on others.
-/// Cost     128 pixels a side: 19 to 25 s of CPU time, most of it in parallel.
+/// Cost     128 pixels a side: 7 to 9 s of CPU time for the search, 1.3 to 2 s for the verdict, most of it in parallel.
 /// Ctrl-C   with a `state`, what is finished and the best so far are in it (`free_form_so_far`) before the exception of
 ///          `progress` goes on its way.
 /// @throws InvalidInput for options out of range, a goal without directions, dark or not finite, or with more light
