@@ -114,8 +114,8 @@ struct LightStatus {
 ///
 /// Light    is on inside of `expose` alone. It is off after construction and after every function that returns or
 ///          throws, as far as the device can still be reached; the destructor sees to it too.
-/// Life     Made connected and identified (see `LightEngineFactory`). After `Disconnected`, or where settings
-///          read back as something else, throw it away and make another: everything is set again.
+/// Life     Made connected and identified (see `LightEngineFactory`). After a LightEngineError `prepare` it again, as
+///          it was put into its dark state; after `Disconnected` throw it away and make another.
 /// Threads  One thread at a time.
 /// Errors   LightEngineError (ExposureError out of `expose`); InvalidInput for a picture of another size,
 ///          an amplitude outside of 0…255, an exposure that is not positive, a picture whose upload is absurd.

@@ -31,12 +31,27 @@ struct Vat {
 enum class Fault {
   None,
   // The light engine, at the n-th thing that is asked of any device.
-  LightRefused, LightTimeout, LightGone, LightSequencer, LightLostSync, LightReset, LightTooHot, LightSloppyDriver,
+  LightRefused,
+  LightTimeout,
+  LightGone,
+  LightSequencer,
+  LightLostSync,
+  LightReset,
+  LightTooHot,
+  LightSloppyDriver,
   LightStopsEarly,
   // The stage.
-  StageSilentBefore, StageSilentAfter, StageRefused, StageRestarted, StageWrong, StageGone,
+  StageSilentBefore,
+  StageSilentAfter,
+  StageRefused,
+  StageRestarted,
+  StageWrong,
+  StageGone,
   // The user, and our own process.
-  UserStops, UserStopsNow, EventThrows, ClockJumps
+  UserStops,
+  UserStopsNow,
+  EventThrows,
+  ClockJumps
 };
 inline constexpr int fault_kinds = 20;
 
@@ -174,27 +189,34 @@ private:
     const Fault fault = world_.next({Fault::LightRefused, Fault::LightTimeout, Fault::LightGone, Fault::LightReset,
                                      Fault::LightLostSync, Fault::LightTooHot, Fault::ClockJumps});
     switch (fault) {
-      case Fault::LightRefused: throw LightEngineError(LightFault::Refused, "refused", 6);
-      case Fault::LightTimeout: throw LightEngineError(LightFault::Timeout, "no answer");
-      case Fault::LightLostSync: throw LightEngineError(LightFault::LostSync, "no sync");
+      case Fault::LightRefused:
+        throw LightEngineError(LightFault::Refused, "refused", 6);
+      case Fault::LightTimeout:
+        throw LightEngineError(LightFault::Timeout, "no answer");
+      case Fault::LightLostSync:
+        throw LightEngineError(LightFault::LostSync, "no sync");
       case Fault::LightReset:
         prepared_ = false;
         throw LightEngineError(LightFault::IgnoredSetting, "reset");
       case Fault::LightTooHot:
         prepared_ = false;
         throw LightEngineError(LightFault::OverTemperature, "too hot");
-      case Fault::LightGone: world_.light_reachable = false; throw gone();
-      case Fault::ClockJumps: world_.clock.sleep_for(seconds(7.0)); break;
-      default: break;
+      case Fault::LightGone:
+        world_.light_reachable = false;
+        throw gone();
+      case Fault::ClockJumps:
+        world_.clock.sleep_for(seconds(7.0));
+        break;
+      default:
+        break;
     }
   }
 
   // Faults with the light on. The device's own end of light lies anywhere in the last step.
   void trouble(Clock::Duration begin) {
-    const Fault fault =
-        world_.next({Fault::LightRefused, Fault::LightTimeout, Fault::LightGone, Fault::LightSequencer,
-                     Fault::LightLostSync, Fault::LightReset, Fault::LightTooHot, Fault::LightSloppyDriver,
-                     Fault::LightStopsEarly});
+    const Fault fault = world_.next({Fault::LightRefused, Fault::LightTimeout, Fault::LightGone, Fault::LightSequencer,
+                                     Fault::LightLostSync, Fault::LightReset, Fault::LightTooHot,
+                                     Fault::LightSloppyDriver, Fault::LightStopsEarly});
     if (fault == Fault::None) return;
     const auto most = world_.clock.now() - begin;
     const auto least = most - std::min(most, fault == Fault::LightSequencer ? seconds(1.0) : seconds(0.02));
@@ -205,12 +227,12 @@ private:
     }
     if (fault == Fault::LightSloppyDriver) throw std::runtime_error("a driver that leaves the light on");
     light_off();
-    const LightFault kind = fault == Fault::LightRefused     ? LightFault::Refused
-                            : fault == Fault::LightTimeout   ? LightFault::Timeout
-                            : fault == Fault::LightReset     ? LightFault::IgnoredSetting
-                            : fault == Fault::LightLostSync  ? LightFault::LostSync
-                            : fault == Fault::LightTooHot    ? LightFault::OverTemperature
-                                                             : LightFault::Sequencer;
+    const LightFault kind = fault == Fault::LightRefused    ? LightFault::Refused
+                            : fault == Fault::LightTimeout  ? LightFault::Timeout
+                            : fault == Fault::LightReset    ? LightFault::IgnoredSetting
+                            : fault == Fault::LightLostSync ? LightFault::LostSync
+                            : fault == Fault::LightTooHot   ? LightFault::OverTemperature
+                                                            : LightFault::Sequencer;
     throw ExposureError(LightEngineError(kind, "in an exposure"), least, most, true);
   }
 
@@ -256,12 +278,16 @@ private:
 
   void disturb(const char* doing) {
     if (!world_.stage_reachable) throw StageError(StageFault::Disconnected, "the stage is gone");
-    const Fault fault = world_.next({Fault::StageSilentBefore, Fault::StageRefused, Fault::StageRestarted,
-                                     Fault::StageWrong, Fault::StageGone});
+    const Fault fault = world_.next(
+        {Fault::StageSilentBefore, Fault::StageRefused, Fault::StageRestarted, Fault::StageWrong, Fault::StageGone});
     switch (fault) {
-      case Fault::StageSilentBefore: throw StageError(StageFault::Silent, std::string("silent: ") + doing);
-      case Fault::StageRefused: throw StageError(StageFault::Refused, std::string("refused: ") + doing);
-      case Fault::StageRestarted: world_.homed = false; throw StageError(StageFault::PositionLost, "restarted");
+      case Fault::StageSilentBefore:
+        throw StageError(StageFault::Silent, std::string("silent: ") + doing);
+      case Fault::StageRefused:
+        throw StageError(StageFault::Refused, std::string("refused: ") + doing);
+      case Fault::StageRestarted:
+        world_.homed = false;
+        throw StageError(StageFault::PositionLost, "restarted");
       case Fault::StageWrong:
         world_.homed = false;
         world_.height_um += 7;
@@ -270,7 +296,8 @@ private:
         world_.stage_reachable = false;
         world_.homed = false;
         throw StageError(StageFault::Disconnected, "the stage is gone");
-      default: break;
+      default:
+        break;
     }
   }
 
