@@ -34,21 +34,13 @@ std::string check_of(std::string_view text) {
 }
 
 // The light that a layer got before is kept while more is added to it.
-void apply_exposing(std::istringstream& line, JournalState& state, std::size_t layer) {
-  double exposure_s = 0.0;
-  line >> exposure_s;
-  OpenLayer open = state.open.value_or(OpenLayer{layer});
-  open.most_s += exposure_s;
-  open.certain = false;
-  state.open = open;
+OpenLayer with_exposure_begun(const OpenLayer& before, double exposure_s) {
+  return {before.index, before.least_s, before.most_s + exposure_s, before.taken_s, false};
 }
 
-void apply_cut(std::istringstream& line, JournalState& state, double before_least, double before_most) {
-  double least = 0.0, most = 0.0;
-  std::string word;
-  line >> least >> most >> word;
-  if (word != "certain" && word != "uncertain") line.setstate(std::ios::failbit);
-  state.open = OpenLayer{state.done, before_least + least, before_most + most, word == "certain"};
+OpenLayer with_exposure_cut(const OpenLayer& before, double least_s, double most_s, bool certain) {
+  return {before.index, before.least_s + least_s, before.most_s + most_s, before.taken_s + 0.5 * (least_s + most_s),
+          certain};
 }
 
 void apply_done(JournalState& state, double lit_s) {
@@ -70,7 +62,7 @@ void apply_decided(std::istringstream& line, JournalState& state) {
   } else if (word == "skip") {
     apply_done(state, state.open->least_s);
   } else if (word == "complete") {
-    state.open->most_s = state.open->least_s;
+    state.open->taken_s = state.open->least_s;
     state.open->certain = true;
   } else {
     line.setstate(std::ios::failbit);
@@ -112,11 +104,16 @@ private:
     line >> layer;
     if (layer != state.done || layer >= state.layers) refuse(number, "speaks of a layer out of turn");
     if (word == "exposing") {
-      least_ = state.open ? state.open->least_s : 0.0;
-      most_ = state.open ? state.open->most_s : 0.0;
-      apply_exposing(line, state, layer);
+      double exposure_s = 0.0;
+      line >> exposure_s;
+      before_ = state.open.value_or(OpenLayer{layer});
+      state.open = with_exposure_begun(before_, exposure_s);
     } else if (word == "cut") {
-      apply_cut(line, state, least_, most_);
+      double least_s = 0.0, most_s = 0.0;
+      std::string known;
+      line >> least_s >> most_s >> known;
+      if (!state.open || (known != "certain" && known != "uncertain")) refuse(number, "cannot be understood");
+      state.open = with_exposure_cut(before_, least_s, most_s, known == "certain");
     } else if (word == "done") {
       double lit_s = 0.0;
       line >> lit_s;
@@ -129,7 +126,7 @@ private:
   }
 
   std::filesystem::path path_;
-  double least_ = 0.0, most_ = 0.0;
+  OpenLayer before_;
 };
 
 struct ReadJournal {
@@ -147,8 +144,8 @@ ReadJournal parse(const std::string& bytes, const std::filesystem::path& path) {
     const bool sound = line.size() > check_digits + 1 && line[line.size() - check_digits - 1] == ' ' &&
                        check_of(std::string_view(line).substr(0, line.size() - check_digits - 1)) ==
                            line.substr(line.size() - check_digits);
-    const bool last = end == std::string::npos || end + 1 == bytes.size();
-    if (last && (end == std::string::npos || !sound)) break;
+    // A crash leaves a line without its end; a whole line that is wrong was damaged later.
+    if (end == std::string::npos) break;
     if (!sound) text.refuse(number, "is damaged");
     text.take(line.substr(0, line.size() - check_digits - 1), number);
     begin = end + 1;
@@ -240,12 +237,12 @@ void Journal::append(const std::string& text) {
 void Journal::exposing(std::size_t layer, double exposure_s) {
   append(fmt::format("exposing {} {:.9g}", layer, exposure_s));
   before_ = state_.open.value_or(OpenLayer{layer});
-  state_.open = OpenLayer{layer, before_.least_s, before_.most_s + exposure_s, false};
+  state_.open = with_exposure_begun(before_, exposure_s);
 }
 
 void Journal::cut(std::size_t layer, double least_s, double most_s, bool certain) {
   append(fmt::format("cut {} {:.9g} {:.9g} {}", layer, least_s, most_s, certain ? "certain" : "uncertain"));
-  state_.open = OpenLayer{layer, before_.least_s + least_s, before_.most_s + most_s, certain};
+  state_.open = with_exposure_cut(before_, least_s, most_s, certain);
 }
 
 void Journal::done(std::size_t layer, double lit_s) {

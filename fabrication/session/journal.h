@@ -15,7 +15,8 @@ struct OpenLayer {
   std::size_t index = 0;
   double least_s = 0.0;  ///< light that it surely got
   double most_s = 0.0;   ///< that it got at most, as far as the light is known to have gone off
-  bool certain = false;  ///< both are known well enough to go on with what is missing
+  double taken_s = 0.0;  ///< what it is taken to have got: the rest is exposed when the print goes on
+  bool certain = false;  ///< `taken_s` is known well enough to go on with what is missing
 };
 
 /// A print as its journal tells it.

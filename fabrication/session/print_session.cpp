@@ -168,7 +168,7 @@ void PrintSession::move(std::int64_t height_um, double speed_um_per_s) {
 
 double PrintSession::missing_s(std::size_t layer) const {
   const auto& open = journal_->state().open;
-  return plan_.layers[layer].exposure_s - (open ? 0.5 * (open->least_s + open->most_s) : 0.0);
+  return plan_.layers[layer].exposure_s - (open ? open->taken_s : 0.0);
 }
 
 bool PrintSession::expose(std::size_t layer) {
@@ -217,9 +217,16 @@ void PrintSession::show(std::size_t layer, double exposure_s) {
 ExposureReport PrintSession::watched_exposure(std::size_t layer, double exposure_s,
                                               const std::function<bool()>& go_on) {
   const auto begin = clock_.now();
+  std::optional<Clock::Duration> first_lit;  // as the light engine asks whether to go on, the light is on
+  Clock::Duration last_lit{0};
+  const auto noted = [&] {
+    last_lit = clock_.now();
+    if (!first_lit) first_lit = last_lit;
+    return go_on();
+  };
   if (options_.watch != nullptr) options_.watch->expect_light(seconds(exposure_s * 1.1 + watch_margin_s));
   try {
-    const ExposureReport report = engine_.expose(go_on);
+    const ExposureReport report = engine_.expose(noted);
     if (options_.watch != nullptr) options_.watch->expect_dark();
     return report;
   } catch (const ExposureError& error) {
@@ -229,7 +236,8 @@ ExposureReport PrintSession::watched_exposure(std::size_t layer, double exposure
     throw;
   } catch (...) {
     const bool is_off = engine_.try_light_off();
-    record_fault(layer, 0.0, in_seconds(clock_.now() - begin), is_off);
+    const double least = first_lit ? in_seconds(last_lit - *first_lit) : 0.0;
+    record_fault(layer, least, in_seconds(clock_.now() - begin), is_off);
     throw;
   }
 }
@@ -251,9 +259,8 @@ bool PrintSession::light(std::size_t layer, double exposure_s) {
   const bool whole = record(layer, report);
   if (problem) std::rethrow_exception(problem);
   if (!whole && control_.stop() != SessionControl::Stop::Now) {
-    throw LightEngineError(LightFault::Sequencer,
-                           fmt::format("the exposure of layer {} ended after {:.3f} of {:.3f} s", layer + 1,
-                                       in_seconds(report.lit), exposure_s));
+    throw LightEngineError(LightFault::Sequencer, fmt::format("the exposure of layer {} ended after {:.3f} of {:.3f} s",
+                                                              layer + 1, in_seconds(report.lit), exposure_s));
   }
   return whole;
 }
@@ -271,7 +278,7 @@ bool PrintSession::record(std::size_t layer, const ExposureReport& report) {
     return false;
   }
   const auto& open = journal_->state().open;
-  journal_->done(layer, (open ? 0.5 * (open->least_s + open->most_s) : 0.0) + lit);
+  journal_->done(layer, (open ? open->taken_s : 0.0) + lit);
   if (std::abs(lit - in_seconds(report.requested)) > tolerance) {
     tell(SessionState::Exposing, layer,
          fmt::format("layer {} got {:.3f} s of light, not {:.3f} s", layer + 1, lit, in_seconds(report.requested)));

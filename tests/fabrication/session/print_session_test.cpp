@@ -15,7 +15,7 @@ struct Bench {
   World world;
   LayerSource job = small_job(8);
   MachineProfile machine = small_machine();
-  SessionControl control;
+  std::optional<SessionControl> control{std::in_place};
   JournalFolder folder;
   std::vector<SessionEvent> events;
 
@@ -25,7 +25,7 @@ struct Bench {
       events.push_back(event);
       if (each_event) each_event(event);
     };
-    return attempt(world, job, machine, options, control);
+    return attempt(world, job, machine, options, *control);
   }
   void expect_whole() const {
     const Vat wanted = expected_vat(plan_print(job.frame, machine));
@@ -90,7 +90,7 @@ TEST(PrintSession, FinishesTheExposureAtTheFirstWordAndCutsItAtTheSecond) {
     int lit_events = 0;
     bench.each_event = [&](const SessionEvent& event) {
       if (event.state == SessionState::Exposing && event.layer == 4 && ++lit_events == 20) {
-        for (int i = 0; i < words; ++i) bench.control.ask_to_stop();
+        for (int i = 0; i < words; ++i) bench.control->ask_to_stop();
       }
     };
     EXPECT_EQ(bench.print().end, SessionEnd::Stopped);
@@ -102,7 +102,7 @@ TEST(PrintSession, FinishesTheExposureAtTheFirstWordAndCutsItAtTheSecond) {
     } else {
       EXPECT_NEAR(lit, 0.38, 0.03);
     }
-    bench.control = {};
+    bench.control.emplace();
     bench.each_event = nullptr;
     EXPECT_EQ(bench.print(true).end, SessionEnd::Finished);
     bench.expect_whole();
@@ -113,13 +113,13 @@ TEST(PrintSession, PausesInTheDarkWithThePlatformLifted) {
   Bench bench;
   std::size_t slices = 0;
   bench.each_event = [&](const SessionEvent& event) {
-    if (event.state == SessionState::Exposing && event.layer == 2) bench.control.ask_to_pause();
+    if (event.state == SessionState::Exposing && event.layer == 2) bench.control->ask_to_pause();
     if (event.state == SessionState::Paused) {
       EXPECT_FALSE(bench.world.light);
       EXPECT_GE(bench.world.height_um, 3 * 18 + 4000);
       EXPECT_EQ(event.layer, 3U);
       ++slices;
-      bench.control.ask_to_pause(false);
+      bench.control->ask_to_pause(false);
     }
   };
   EXPECT_EQ(bench.print().end, SessionEnd::Finished);
@@ -187,10 +187,10 @@ TEST(PrintSession, DoesNotPressABegunPartIntoTheVat) {
   Bench bench;
   bench.machine.home_at = HomeAt::Bottom;
   bench.each_event = [&](const SessionEvent& event) {
-    if (event.layer == 2) bench.control.ask_to_stop();
+    if (event.layer == 2) bench.control->ask_to_stop();
   };
   EXPECT_EQ(bench.print().end, SessionEnd::Stopped);
-  bench.control = {};
+  bench.control.emplace();
   const auto height = bench.world.height_um;
   const Attempt again = bench.print(true);
   EXPECT_TRUE(again.refused) << again.error;
@@ -201,7 +201,7 @@ TEST(PrintSession, ExposesNothingWithoutAJournal) {
   Bench bench;
   bench.job = small_job(8);
   SessionOptions options{"/dev/full"};
-  const Attempt full = attempt(bench.world, bench.job, bench.machine, options, bench.control);
+  const Attempt full = attempt(bench.world, bench.job, bench.machine, options, *bench.control);
   EXPECT_FALSE(full.end);
   for (const auto& layer : bench.world.vat->lit_s) {
     for (const double lit : layer) EXPECT_EQ(lit, 0.0);
