@@ -61,18 +61,17 @@ void MarlinStage::greet() {
   fail(StageFault::Silent, "M110 N0", "does not answer; are the port and the baud rate right, and is it powered?");
 }
 
-// True where the line was taken, false where it is to be sent again.
-bool MarlinStage::await(std::string_view text, std::int64_t number, Time deadline) {
+MarlinStage::Answer MarlinStage::await(std::string_view text, std::int64_t number, Time deadline) {
   bool again = false;
   auto patience = std::min(deadline, steady_clock::now() + settings_.answer);
   if (text == "M400" || text.starts_with("G28")) patience = deadline;
   for (;;) {
     const auto line = line_.read_line(patience);
-    if (!line) return false;
+    if (!line) return Answer::Silence;
     const MarlinReply reply = parse_marlin_reply(*line);
     switch (reply.kind) {
       case MarlinReply::Kind::Acknowledged:
-        return !again;
+        return again ? Answer::Again : Answer::Taken;
       case MarlinReply::Kind::Resend:
         if (reply.number < number) {
           fail(StageFault::PositionLost, text,
@@ -113,12 +112,12 @@ void MarlinStage::command(std::string_view text, milliseconds limit) {
   int silences = 0;
   try {
     for (int repeat = 0; repeat <= largest_repeats; ++repeat) {
-      const auto sent = steady_clock::now();
       line_.write(bytes);
-      if (await(text, number, std::max(deadline, sent + milliseconds(1)))) return;
-      const bool silent = steady_clock::now() - sent >= std::min(settings_.answer, limit);
-      if (silent && ++silences == 2) fail(StageFault::Silent, text, "does not answer");
-      if (steady_clock::now() >= deadline && silent) fail(StageFault::Silent, text, "did not answer in time");
+      const Answer answer = await(text, number, deadline);
+      if (answer == Answer::Taken) return;
+      if (answer == Answer::Again) continue;
+      if (steady_clock::now() >= deadline) fail(StageFault::Silent, text, "did not get done in time");
+      if (++silences == 2) fail(StageFault::Silent, text, "does not answer");
     }
   } catch (const StageError& error) {
     // From here on nobody knows which line the board expects.

@@ -40,7 +40,8 @@ private:
   using Time = SerialLine::Time;
   void greet();
   void command(std::string_view text, std::chrono::milliseconds limit);
-  bool await(std::string_view text, std::int64_t number, Time deadline);
+  enum class Answer { Taken, Again, Silence };
+  Answer await(std::string_view text, std::int64_t number, Time deadline);
   [[noreturn]] void fail(StageFault fault, std::string_view text, const std::string& problem);
 
   MarlinSettings settings_;

@@ -87,7 +87,7 @@ std::optional<std::string> SerialLine::read_line(Time deadline) {
       throw StageError(StageFault::Garbled, name_ + ": the stage sends no line ends; is the baud rate right?");
     }
     using namespace std::chrono;
-    const auto left = duration_cast<milliseconds>(deadline - steady_clock::now()).count();
+    const auto left = ceil<milliseconds>(deadline - steady_clock::now()).count();
     if (left <= 0) return {};
     std::array<char, 256> bytes;
     const auto count = sp_blocking_read_next(port_.get(), bytes.data(), bytes.size(),
