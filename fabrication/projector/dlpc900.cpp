@@ -282,7 +282,7 @@ ExposureReport Dlpc900::light_by_device(const std::function<bool()>& go_on) {
   start_uploaded_sequence();
   const Moment on = *lit_.on;
   ExposureReport report;
-  if (watch(on.latest + exposure_, go_on)) {
+  if (watch(on.earliest + exposure_, go_on)) {
     const auto ended = wait_for_sequence_end(on.earliest + exposure_);
     report.lit = exposure_;
     report.uncertainty = ended - (on.earliest + exposure_);
