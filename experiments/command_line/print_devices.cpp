@@ -7,6 +7,7 @@
 #include "fabrication/projector/usb_transport.h"
 #include "fabrication/stage/marlin_stage.h"
 #include "fabrication/stage/virtual_stage.h"
+#include "fabrication/video/display_window.h"
 
 namespace mezzotint {
 
@@ -40,8 +41,9 @@ std::unique_ptr<LightEngine> make_light(const std::string& device, const Machine
                                         Clock& clock) {
   if (device == "virtual") return std::make_unique<VirtualLight>(clock, frame.columns, frame.rows);
   std::unique_ptr<LayerWindow> window;
-  require(machine.projector.way != Dlpc900Options::Way::Video,
-          "the machine profile says way = \"video\", which this build has no window for; say way = \"upload\"");
+  if (machine.projector.way == Dlpc900Options::Way::Video) {
+    window = open_display_window({frame.columns, frame.rows, machine.display});
+  }
   return make_dlpc900(dlpc900::open_usb({.place = machine.usb}), clock, machine.projector, std::move(window));
 }
 

@@ -2,8 +2,8 @@
 
 #include <memory>
 
+#include "fabrication/device/layer_window.h"
 #include "fabrication/device/light_engine.h"
-#include "fabrication/projector/layer_window.h"
 #include "fabrication/projector/report_transport.h"
 
 namespace mezzotint {

@@ -315,7 +315,9 @@ std::uint8_t DeviceModel::start_or_stop(std::uint8_t action) {
   }
   runs_ = true;
   sequence_end_.reset();
-  if (repeats != 0 && !runs_on_) sequence_end_ = clock_.now() + std::chrono::microseconds(total_us);
+  const auto now = clock_.now();
+  if (repeats != 0 && !runs_on_) sequence_end_ = now + std::chrono::microseconds(total_us);
+  update_light(now);
   return 0;
 }
 
