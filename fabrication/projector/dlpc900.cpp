@@ -194,8 +194,8 @@ void Dlpc900::fail_exposure(const LightEngineError& cause) {
   const auto exposure = exposure_;
   exposure_ = {};
   Clock::Duration most = lit_.ordered ? now - *lit_.ordered : none;
-  // The device ends an uploaded layer by itself, also where it cannot be reached.
-  if (uploads()) most = std::min(most, exposure);
+  // The device ends an uploaded layer by itself, also where it cannot be reached; unless it was seen not to.
+  if (uploads() && !dark && lit_.ordered) most = std::min(most, std::max(exposure, lit_.seen_lit - *lit_.ordered));
   Clock::Duration least = lit_.on ? std::max(lit_.seen_lit, lit_.on->latest) - lit_.on->latest : none;
   least = std::min({least, most, failed_at - (lit_.on ? lit_.on->latest : failed_at)});
   throw ExposureError(cause, least, most, dark);

@@ -73,6 +73,8 @@ std::vector<Setting> settings_that_read_back(const LightSettings& settings, cons
   const auto flag = [](bool value) { return std::vector<std::uint8_t>{static_cast<std::uint8_t>(value ? 1 : 0)}; };
   std::vector<Setting> list = {{Command::LedCurrents, {current, current, current}},
                                {Command::LedPolarity, flag(options.led_polarity_inverted)},
+                               // Off, and by force: after a reset the sequencer has them, and a start would light them.
+                               {Command::LedEnable, {leds_off}},
                                {Command::FlipLongAxis, flag(settings.flip_columns)},
                                {Command::FlipShortAxis, flag(settings.flip_rows)}};
   if (options.way == Dlpc900Options::Way::Video) {

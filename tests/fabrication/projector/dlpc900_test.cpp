@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "tests/fabrication/projector/emulated_transport.h"
+#include "tests/fabrication/projector/emulated_window.h"
 
 namespace mezzotint {
 namespace {
@@ -12,21 +13,6 @@ namespace {
 using emulator::Fault;
 using std::chrono::milliseconds;
 using Way = Dlpc900Options::Way;
-
-/// A window whose pixels are the emulated projector's video.
-class EmulatedWindow final : public LayerWindow {
-public:
-  EmulatedWindow(emulator::DeviceModel& device, std::size_t columns, std::size_t rows)
-      : device_(device), columns_(columns), rows_(rows) {}
-  [[nodiscard]] std::size_t columns() const override { return columns_; }
-  [[nodiscard]] std::size_t rows() const override { return rows_; }
-  void show(const LayerPicture& picture) override { device_.show_video({picture.gray.begin(), picture.gray.end()}); }
-  void blank() override { device_.show_video(emulator::Bytes(columns_ * rows_, 0)); }
-
-private:
-  emulator::DeviceModel& device_;
-  std::size_t columns_, rows_;
-};
 
 /// The smaller of the two projectors, so that pictures are cheap; the pair of controllers has tests of its own.
 class Dlpc900Test : public testing::TestWithParam<Way> {

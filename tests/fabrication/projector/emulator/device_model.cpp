@@ -179,14 +179,18 @@ void DeviceModel::reply(std::uint8_t flags, std::uint8_t sequence, const Answer&
   if (fault == Fault::ZeroLength) bytes[2] = bytes[3] = 0;
   if (fault == Fault::OverLong) bytes[2] = 200;
   if (fault == Fault::ShortReply) bytes.resize(3);
-  if (late_) outgoing_.push_back(*late_);
+  if (late_) send(*late_);
   late_.reset();
   if (fault == Fault::StaleReply) {
     Bytes stale = bytes;
     --stale[1];
     stale[4] ^= 0xff;
-    outgoing_.push_back(stale);
+    send(stale);
   }
+  send(bytes);
+}
+
+void DeviceModel::send(const Bytes& bytes) {
   for (std::size_t at = 0; at < bytes.size(); at += 64) {
     const auto first = bytes.begin() + static_cast<std::ptrdiff_t>(at);
     outgoing_.emplace_back(first, first + static_cast<std::ptrdiff_t>(std::min<std::size_t>(64, bytes.size() - at)));

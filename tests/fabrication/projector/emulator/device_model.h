@@ -112,6 +112,7 @@ private:
   /// False: the message goes no further.
   bool disturb(const ScriptedFault& fault, std::uint16_t command);
   void reply(std::uint8_t flags, std::uint8_t sequence, const Answer& answer, std::optional<Fault> fault);
+  void send(const Bytes& bytes);
   [[nodiscard]] Answer read(std::uint16_t command);
   [[nodiscard]] std::uint8_t write(std::uint16_t command, const Bytes& data);
   [[nodiscard]] std::uint8_t write_mode(std::uint8_t mode);
