@@ -239,9 +239,9 @@ Moment Dlpc900::start_light() {
 
 ExposureReport Dlpc900::light_by_host(const std::function<bool()>& go_on) {
   const Moment on = start_light();
-  const bool complete = watch(on.middle() + exposure_, go_on);
+  const bool complete = watch(on.earliest + exposure_, go_on);
   const Moment off = switch_leds(link_, clock_, leds_off);
-  return {.lit = off.middle() - on.middle(), .uncertainty = on.uncertainty() + off.uncertainty(), .complete = complete};
+  return {.lit = between(on, off), .uncertainty = uncertainty_between(on, off), .complete = complete};
 }
 
 void Dlpc900::start_uploaded_sequence() {
@@ -292,8 +292,8 @@ ExposureReport Dlpc900::light_by_device(const std::function<bool()>& go_on) {
     const Moment off = switch_leds(link_, clock_, leds_off);
     stop_sequence();
     report.complete = false;
-    report.lit = std::min(off.middle() - on.middle(), exposure_);
-    report.uncertainty = on.uncertainty() + off.uncertainty();
+    report.lit = std::min(between(on, off), exposure_);
+    report.uncertainty = uncertainty_between(on, off);
   }
   // An end that came late is seen here too: no error may have been raised on the way.
   require_healthy(read_hardware_status(link_), hardware_.controllers);
