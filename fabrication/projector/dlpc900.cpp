@@ -75,6 +75,7 @@ private:
 
 void Dlpc900::connect() {
   link_.drain();
+  wake(link_, clock_);
   link_.set(Command::LedEnable, {leds_off});
   hardware_ = identify(link_);
   require_healthy(read_hardware_status(link_), hardware_.controllers);

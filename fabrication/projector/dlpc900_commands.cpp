@@ -17,6 +17,8 @@ std::string_view command_name(Command command) {
       return "error code";
     case Command::ErrorText:
       return "error text";
+    case Command::PowerMode:
+      return "power mode";
     case Command::FirmwareVersion:
       return "firmware version";
     case Command::HardwareAndTag:

@@ -6,6 +6,8 @@ namespace mezzotint::dlpc900 {
 namespace {
 
 constexpr std::size_t version_bytes = 16, hardware_bytes = 33;
+constexpr auto wake_time = std::chrono::seconds(130);
+constexpr auto wake_poll = std::chrono::seconds(1);
 constexpr auto lock_time = std::chrono::seconds(5);
 constexpr auto lock_poll = std::chrono::milliseconds(100);
 constexpr auto mode_change_time = std::chrono::milliseconds(350);  // 300 in the guide; earlier answers are not true
@@ -66,6 +68,20 @@ Hardware identify(Link& link) {
                                          bytes[0]));
   }
   return hardware;
+}
+
+void wake(Link& link, Clock& clock) {
+  constexpr std::uint8_t normal = 0;
+  const auto deadline = clock.now() + wake_time;
+  while (link.read(Command::PowerMode, 1)[0] != normal) {
+    if (clock.now() >= deadline) throw LightEngineError(LightFault::Timeout, "the projector does not leave standby");
+    try {
+      link.order(Command::PowerMode, {normal});
+    } catch (const LightEngineError& error) {
+      if (error.fault() != LightFault::Refused) throw;
+    }
+    clock.sleep_for(wake_poll);
+  }
 }
 
 std::vector<Setting> settings_that_read_back(const LightSettings& settings, const Dlpc900Options& options) {

@@ -95,6 +95,17 @@ TEST_P(Dlpc900Test, LightsTheVeryPictureForItsTimeAndNeverElse) {
   EXPECT_FALSE(device.light_is_on());
 }
 
+TEST_P(Dlpc900Test, WaitsForAProjectorThatHasJustGoneToStandby) {
+  engine.reset();
+  device.stand_by();
+  const auto begin = clock.now();
+  connect();
+  EXPECT_NEAR(in_seconds(clock.now() - begin), 123.0, 3.0);
+  show();
+  static_cast<void>(engine->expose(always));
+  EXPECT_EQ(device.light_log().back().picture, gray);
+}
+
 TEST_P(Dlpc900Test, APictureIsLitOnce) {
   show();
   static_cast<void>(engine->expose(always));

@@ -80,6 +80,7 @@ public:
   void stall_out_report(int nth) { stall_out_in_ = nth; }
   [[nodiscard]] std::size_t faults_left();
   void power_cycle();
+  void stand_by();
   void heal_sequencer();
   void show_video(const Bytes& picture);
   void lock_video(bool locked);
@@ -144,7 +145,7 @@ private:
   std::array<Loading, 2> loading_;
   bool runs_ = false;
   std::optional<Clock::Duration> sequence_end_;
-  Clock::Duration mode_settles_{0};
+  Clock::Duration mode_settles_{0}, parked_at_{0};
   std::uint8_t mode_before_ = 1;
   bool sequencer_error_ = false, sequencer_abort_ = false, secondary_ = true, locked_ = true;
   bool runs_on_ = false;
