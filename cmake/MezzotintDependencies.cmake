@@ -1,6 +1,10 @@
 # Every library that we use, found the way it asks to be found. Debian 12's versions.
 
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+# After Eigen: CGAL's own way to find Eigen hides its target. Only fabrication/repair includes CGAL.
+set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
+option(BUILD_TESTING "Build the testing tree." ON)  # or CGAL's files would turn it off in a fresh build folder
+find_package(CGAL 5.5 REQUIRED)
 find_package(embree 3 REQUIRED)
 find_package(NLopt REQUIRED)
 find_package(TBB REQUIRED)
@@ -9,6 +13,7 @@ find_package(fmt REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(ZLIB REQUIRED)
+find_package(PNG REQUIRED)
 find_package(Threads REQUIRED)
 # Optional: sweeps over several processes and machines.
 find_package(MPI QUIET COMPONENTS C)
@@ -26,6 +31,8 @@ set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRE
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3)
 pkg_check_modules(ZIP REQUIRED IMPORTED_TARGET libzip)
+pkg_check_modules(DEFLATE REQUIRED IMPORTED_TARGET libdeflate)
+pkg_check_modules(LIB3MF REQUIRED IMPORTED_TARGET lib3MF)
 pkg_check_modules(TOMLPLUSPLUS REQUIRED IMPORTED_TARGET tomlplusplus)
 pkg_check_modules(NETTLE REQUIRED IMPORTED_TARGET nettle)
 pkg_check_modules(LIBUSB REQUIRED IMPORTED_TARGET libusb-1.0)

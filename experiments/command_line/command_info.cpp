@@ -6,7 +6,9 @@
 #include <CLI/CLI.hpp>
 
 #include "experiments/command_line/command.h"
-#include "fabrication/job/job.h"
+#include "experiments/command_line/job_description.h"
+#include "experiments/command_line/json_words.h"
+#include "experiments/command_line/part_arguments.h"
 #include "forward/base/quantity.h"
 #include "forward/bsdf_table/bsdf_table_file.h"
 #include "forward/optics/bsdf.h"
@@ -109,18 +111,6 @@ Json describe(const BsdfTable& table) {
           {"provenance", table.provenance}};
 }
 
-Json describe(const Job& job) {
-  return {{"format", "uvj"},
-          {"name", job.name},
-          {"printer", job.printer},
-          {"columns", job.columns},
-          {"rows", job.rows},
-          {"pixel_pitch", Quantity{job.pixel_pitch.um(), "µm", {}}},
-          {"layer", Quantity{job.layer.um(), "µm", {}}},
-          {"layers", job.layers.size()},
-          {"led_amplitude", job.led_amplitude}};
-}
-
 // What a lobe that was measured from a listed direction covers, and how much light it holds.
 Json lobe_of_incidence(const MeasuredReflectance& measured, const DirectionAngles& light) {
   constexpr std::size_t samples = 4;
@@ -160,13 +150,24 @@ bool begins_with(const std::filesystem::path& path, std::string_view magic) {
   return stream && head == magic;
 }
 
-Json describe_any(const std::filesystem::path& path) {
-  if (path.extension() == ".uvj") return describe(read_uvj(path));
+// A mesh may be a piece of relief or a part: both are said, for 3MF the part alone.
+Json describe_mesh(const std::filesystem::path& path, std::optional<Length> unit) {
+  const PartFile part = read_part(path, {.unit = unit});
+  Json json = is_mesh_path(path) ? describe(read_mesh(path, unit)) : Json{{"format", "mesh, " + part.format}};
+  json["part"] = describe(mesh_facts(part.mesh));
+  if (!part.mesh.group_names.empty()) json["part"]["groups"] = part.mesh.group_names;
+  if (!part.notes.empty()) json["part"]["notes"] = part.notes;
+  return json;
+}
+
+Json describe_any(const std::filesystem::path& path, const std::string& unit, const Progress& progress) {
+  if (is_part_path(path)) return describe_mesh(path, unit_named(unit));
+  require(unit.empty(), "--unit is for meshes (.obj, .ply, .stl, .3mf)");
+  if (path.extension() == ".uvj" || path.extension() == ".sl1") return describe_job(path, progress);
   // An OpenEXR file is a relief where it has a sidecar, else a BSDF.
   if (begins_with(path, "\x76\x2f\x31\x01") && !has_sidecar(path)) {
     return is_bsdf_table(path) ? describe(read_bsdf_table(path)) : describe(read_channels_exr(path));
   }
-  if (is_mesh_path(path)) return describe(read_mesh(path));
   if (is_reflectance_file(path)) return describe(read_reflectance(path));
   const SurfaceFile surface = read_surface(path);
   Json json = describe(surface);
@@ -175,57 +176,23 @@ Json describe_any(const std::filesystem::path& path) {
   return json;
 }
 
-std::string value_in_words(const Json& value) {
-  if (value.is_object() && value.contains("value")) {
-    std::string text = fmt::format("{:.6g}", value["value"].is_number() ? value["value"].get<double>() : 0.0);
-    if (value.contains("standard_error") && value["standard_error"].is_number()) {
-      text += fmt::format(" ± {:.2g}", value["standard_error"].get<double>());
-    }
-    return value["unit"] == "1" ? text : text + " " + value["unit"].get<std::string>();
-  }
-  return value.is_string() ? value.get<std::string>() : value.dump();
-}
-
-std::string in_words(const Json& json) {
-  std::string text;
-  for (const auto& [key, value] : json.items()) {
-    const bool is_list = value.is_object() && !value.contains("value");
-    if (!is_list) {
-      if (value_in_words(value).empty()) continue;
-      text += fmt::format("{:<18} {}\n", key, value_in_words(value));
-      continue;
-    }
-    for (const auto& [name, entry] : value.items()) text += fmt::format("  {:<22} {}\n", name, value_in_words(entry));
-  }
-  if (!text.empty()) text.pop_back();
-  return text;
-}
-
-Command describing_command(CLI::App& program, const char* name, const char* help,
-                           Json (*describe_file)(const std::filesystem::path&)) {
-  auto* app = program.add_subcommand(name, help);
-  auto file = std::make_shared<std::string>();
-  app->add_option("FILE", *file, "File")->required();
-  return {app, [file, describe_file](const CommandContext& context) {
-            const Json json = describe_file(*file);
-            context.print(json, in_words(json));
-            return ExitStatus::Done;
-          }};
-}
-
 }  // namespace
 
 Command add_info(CLI::App& program) {
-  return describing_command(
-      program, "info",
-      "What a file is: surface, mesh, BSDF, measured BRDF or job; size, spacing, units, range, provenance",
-      describe_any);
-}
-
-Command add_job(CLI::App& program) {
-  return describing_command(
-      program, "job", "Check a layer archive (.uvj) whole (layers, sizes, bit depth, exposures, hashes) and sum it up",
-      [](const std::filesystem::path& path) { return describe(read_uvj(path)); });
+  auto* app = program.add_subcommand(
+      "info",
+      "What a file is: surface, mesh, part, BSDF, measured BRDF or job; size, spacing, units, range, provenance");
+  struct Arguments {
+    std::string file, unit;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  app->add_option("FILE", arguments->file, "File")->required();
+  add_unit(*app, arguments->unit);
+  return {app, [arguments](const CommandContext& context) {
+            const Json json = describe_any(arguments->file, arguments->unit, context.progress);
+            context.print(json, in_words(json));
+            return ExitStatus::Done;
+          }};
 }
 
 }  // namespace mezzotint

@@ -9,6 +9,7 @@
 #include "experiments/configuration/printer_file.h"
 #include "experiments/run/run_files.h"
 #include "fabrication/device/virtual_printer.h"
+#include "fabrication/job/job_file.h"
 #include "measurement/comparison/registration.h"
 #include "measurement/correction/plane.h"
 #include "measurement/formats/surface_file.h"
@@ -44,9 +45,9 @@ HeightField only_where_measured(const HeightField& field, const HeightField& mas
 }  // namespace
 
 Command add_print(CLI::App& program) {
-  auto* app = program.add_subcommand("print", "Print a job (.uvj) on the virtual printer; the relief becomes a .gwy");
+  auto* app = program.add_subcommand("print", "Print a job (.uvj, .sl1, folder) on the virtual printer; the relief becomes a .gwy");
   auto arguments = std::make_shared<PrintArguments>();
-  app->add_option("JOB", arguments->job, "Layer archive (.uvj)")->required();
+  app->add_option("JOB", arguments->job, "Layer archive (.uvj, .sl1) or folder")->required();
   app->add_option("--output,-o", arguments->output, "Printed relief to write (.gwy)")->required();
   app->add_option("--device", arguments->device, "virtual")->check(CLI::IsMember({"virtual"}));
   app->add_option("--printer", arguments->printer, "Printer profile (TOML; default: the slides' printer)");
@@ -62,7 +63,7 @@ Command add_print(CLI::App& program) {
             const PrinterProfile printer =
                 arguments->printer.empty() ? PrinterProfile{} : read_printer(arguments->printer);
             const std::uint64_t seed = context.common.seed >= 0 ? static_cast<std::uint64_t>(context.common.seed) : 1;
-            const HeightField relief = print_virtually(read_uvj(arguments->job), printer,
+            const HeightField relief = print_virtually(read_job(arguments->job), printer,
                                                        {.subsamples = arguments->subsamples,
                                                         .wavelength = Length::from_nm(arguments->wavelength_nm),
                                                         .seed = seed},

@@ -1,20 +1,16 @@
 #include "fabrication/job/png_picture.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
+#include <png.h>
 
 #include <algorithm>
 #include <array>
 
-#include "forward/base/bounded_memory.h"
+#include "forward/base/error.h"
 
 namespace mezzotint {
 
 namespace {
-
-// Fixed, since the default of a library may change from version to version.
-constexpr int compression_level = 6;
 
 struct PngHeader {
   std::uint32_t columns, rows;
@@ -38,8 +34,8 @@ PngHeader read_header(std::span<const std::byte> png, const MemberPlace& place) 
   return {big_endian(png, 16), big_endian(png, 20), std::to_integer<int>(png[24]), std::to_integer<int>(png[25])};
 }
 
-// Every chunk lies within the bytes, up to the last one (length, name, data, checksum). Asked here, since
-// OpenImageIO 2.4 leaks when libpng runs into the end of a picture.
+// Every chunk lies within the bytes, up to the last one (length, name, data, checksum): libpng takes a picture that
+// lacks its end.
 void check_chunks(std::span<const std::byte> png, const MemberPlace& place) {
   constexpr std::uint32_t iend = 0x49454E44;
   std::size_t at = 8;
@@ -63,35 +59,46 @@ void check_header(const PngHeader& header, std::size_t columns, std::size_t rows
 
 }  // namespace
 
+namespace {
+
+/// libpng's picture in memory, freed whatever happens.
+struct Picture {
+  png_image image = {};
+  Picture() { image.version = PNG_IMAGE_VERSION; }
+  ~Picture() { png_image_free(&image); }
+  Picture(const Picture&) = delete;
+  Picture& operator=(const Picture&) = delete;
+};
+
+}  // namespace
+
 std::string encode_png(std::span<const std::uint8_t> pixels, std::size_t columns, std::size_t rows, int channels) {
-  OIIO::ImageSpec spec(static_cast<int>(columns), static_cast<int>(rows), channels, OIIO::TypeDesc::UINT8);
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput sink(bytes);
-  OIIO::Filesystem::IOProxy* const proxy = &sink;
-  spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  spec.attribute("png:compressionLevel", compression_level);
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("layer.png");
-  const bool good = output && output->open("layer.png", spec) &&
-                    output->write_image(OIIO::TypeDesc::UINT8, pixels.data()) && output->close();
-  if (!good) throw DeviceError("cannot make a PNG picture: " + (output ? output->geterror() : OIIO::geterror()));
-  return {bytes.begin(), bytes.end()};
+  Picture picture;
+  picture.image.width = static_cast<png_uint_32>(columns);
+  picture.image.height = static_cast<png_uint_32>(rows);
+  picture.image.format = channels == 1 ? PNG_FORMAT_GRAY : PNG_FORMAT_RGB;
+  picture.image.flags = PNG_IMAGE_FLAG_FAST;  // previews; twice the bytes at a fifth of the time
+  std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(picture.image), '\0');
+  png_alloc_size_t size = bytes.size();
+  if (png_image_write_to_memory(&picture.image, bytes.data(), &size, 0, pixels.data(), 0, nullptr) == 0)
+    throw DeviceError(std::string("cannot make a PNG picture: ") + picture.image.message);
+  bytes.resize(size);
+  return bytes;
 }
 
 std::vector<std::uint8_t> decode_gray_png(std::span<const std::byte> png, std::size_t columns, std::size_t rows,
                                           const MemberPlace& place) {
   check_header(read_header(png, place), columns, rows, place);
   check_chunks(png, place);
-  BoundedMemory source(png.data(), png.size());
-  OIIO::Filesystem::IOProxy* const proxy = &source;
-  OIIO::ImageSpec config;
-  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open("layer.png", &config, proxy);
-  if (!input) place.refuse("is a damaged PNG picture: " + OIIO::geterror());
+  Picture picture;
+  const auto refuse = [&] { place.refuse(std::string("is a damaged PNG picture: ") + picture.image.message); };
+  if (png_image_begin_read_from_memory(&picture.image, png.data(), png.size()) == 0) refuse();
   // A chunk of transparency would turn gray into two channels.
-  if (input->spec().nchannels != 1) place.refuse("is not plain gray; layers are 8-bit gray pictures");
+  if ((picture.image.format & PNG_FORMAT_FLAG_ALPHA) != 0)
+    place.refuse("is not plain gray; layers are 8-bit gray pictures");
+  picture.image.format = PNG_FORMAT_GRAY;
   std::vector<std::uint8_t> pixels(columns * rows);
-  const bool good = input->read_image(0, 0, 0, 1, OIIO::TypeDesc::UINT8, pixels.data());
-  if (!good || input->has_error()) place.refuse("is a damaged PNG picture: " + input->geterror());
+  if (png_image_finish_read(&picture.image, nullptr, pixels.data(), 0, nullptr) == 0) refuse();
   return pixels;
 }
 

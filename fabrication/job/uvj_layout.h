@@ -39,7 +39,8 @@ using MemberHashes = std::map<std::string, std::string>;
 [[nodiscard]] std::string write_manifest(const Job& job, const MemberHashes& hashes);
 
 /// The job of a config.json, with layers that have no picture yet.
-/// @throws FileError saying which value is missing or wrong; sizes are checked before memory is taken for them.
+/// @throws FileError saying which value is missing or wrong; sizes of a layer, and the number of layers, are checked
+///         before memory is taken for them.
 [[nodiscard]] Job read_config(std::span<const std::byte> text, const MemberPlace& place);
 
 /// Takes over what a manifest.json knows of the job; returns the hashes that it promises.

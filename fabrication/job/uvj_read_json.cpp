@@ -99,9 +99,6 @@ Job read_config(std::span<const std::byte> text, const MemberPlace& place) {
   Job job;
   read_size(size, job, place);
   const std::size_t layer_count = size.at("Layers").whole(1, largest_layer_count);
-  if (layer_count > largest_job_pixels / (job.columns * job.rows)) {
-    place.refuse("all layers together have more than 2^32 pixels");
-  }
   read_layers(root, job, layer_count, place);
   return job;
 }
@@ -121,6 +118,7 @@ MemberHashes read_manifest(std::span<const std::byte> text, const MemberPlace& p
   job.pixel_pitch = pitch;
   job.layer = layer;
   job.name = root.at("name").text();
+  if (root.has("led_amplitude")) job.led_amplitude = static_cast<int>(root.at("led_amplitude").whole(1, 255));
   job.printer = root.at("printer").text();
   MemberHashes hashes;
   const CheckedJson listed = root.at("sha256");

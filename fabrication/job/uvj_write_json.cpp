@@ -61,6 +61,7 @@ std::string write_manifest(const Job& job, const MemberHashes& hashes) {
                   {"printer", job.printer},
                   {"pixel_pitch_um", job.pixel_pitch.um()},
                   {"layer_um", job.layer.um()},
+                  {"led_amplitude", job.led_amplitude},
                   {"gray_bits", 8},
                   {"first_row", "y_max"},
                   {"sha256", hashes}});

@@ -24,14 +24,6 @@ std::string ending_of(const std::filesystem::path& path) {
   return ending;
 }
 
-RawMesh parse(const std::filesystem::path& path) {
-  const std::string ending = ending_of(path);
-  if (!is_mesh_path(path)) throw FileError(path, "", "is no mesh by its ending; .obj, .ply and .stl are read");
-  const std::vector<std::byte> bytes = read_file(path);
-  if (ending == ".obj") return parse_obj(path, bytes);
-  return ending == ".ply" ? parse_ply(path, bytes) : parse_stl(path, bytes);
-}
-
 void note(std::string& assumption, const std::string& text) {
   if (!assumption.empty()) assumption += "; ";
   assumption += text;
@@ -91,10 +83,14 @@ void add_polygon(std::span<const std::uint32_t> corners, RawMesh& mesh) {
   for (std::size_t k = 2; k < corners.size(); ++k) mesh.triangles.push_back({corners[0], corners[k - 1], corners[k]});
 }
 
+void refuse_vertex(const std::filesystem::path& path, const std::string& place) {
+  throw FileError(path, place, "a vertex has a coordinate that is no finite number");
+}
+
 void add_vertex(const std::filesystem::path& path, const std::string& place, const std::array<double, 3>& vertex,
                 RawMesh& mesh) {
   for (const double coordinate : vertex) {
-    if (!std::isfinite(coordinate)) throw FileError(path, place, "a vertex has a coordinate that is no finite number");
+    if (!std::isfinite(coordinate)) refuse_vertex(path, place);
   }
   if (mesh.vertices.size() == most_mesh_elements) throw FileError(path, place, "has more than 2^28 vertices");
   mesh.vertices.push_back(vertex);
@@ -105,8 +101,16 @@ bool is_mesh_path(const std::filesystem::path& path) {
   return ending == ".obj" || ending == ".ply" || ending == ".stl";
 }
 
+RawMesh read_raw_mesh(const std::filesystem::path& path) {
+  const std::string ending = ending_of(path);
+  if (!is_mesh_path(path)) throw FileError(path, "", "is no mesh by its ending; .obj, .ply and .stl are read");
+  const std::vector<std::byte> bytes = read_file(path);
+  if (ending == ".obj") return parse_obj(path, bytes);
+  return ending == ".ply" ? parse_ply(path, bytes) : parse_stl(path, bytes);
+}
+
 MeshFile read_mesh(const std::filesystem::path& path, std::optional<Length> unit) {
-  const RawMesh raw = parse(path);
+  const RawMesh raw = read_raw_mesh(path);
   if (raw.triangles.empty()) throw FileError(path, "", "has no triangle");
   if (raw.triangles.size() > most_mesh_elements) throw FileError(path, "", "has more than 2^28 triangles");
   MeshFile file{.format = raw.format};

@@ -1,11 +1,12 @@
 #include <bit>
-#include <unordered_map>
+#include <cmath>
 
 #include <fmt/format.h>
 
 #include "forward/base/error.h"
 #include "forward/surface/mesh_parsers.h"
 #include "forward/surface/text_words.h"
+#include "forward/surface/vertex_welder.h"
 
 namespace mezzotint {
 
@@ -19,32 +20,20 @@ std::uint32_t word_at(std::span<const std::byte> bytes, std::size_t at) {
   return value;
 }
 
-// One vertex for all corners at the same place.
-class Welder {
-public:
-  Welder(const std::filesystem::path& path, RawMesh& mesh) : path_(path), mesh_(mesh) {}
+VertexWelder::Place place_at(std::span<const std::byte> bytes, std::size_t at) {
+  VertexWelder::Place place{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    place[axis] = double{std::bit_cast<float>(word_at(bytes, at + 4 * axis))};
+  return place;
+}
 
-  std::uint32_t number(const std::string& place, std::array<double, 3> corner) {
-    for (double& coordinate : corner) coordinate += 0.0;  // −0 is 0
-    const auto next = static_cast<std::uint32_t>(mesh_.vertices.size());
-    const auto [known, is_new] = numbers_.try_emplace(corner, next);
-    if (is_new) add_vertex(path_, place, corner, mesh_);
-    return known->second;
-  }
+bool is_finite(const VertexWelder::Place& place) {
+  return std::isfinite(place[0]) && std::isfinite(place[1]) && std::isfinite(place[2]);
+}
 
-private:
-  struct Hash {
-    std::size_t operator()(const std::array<double, 3>& corner) const {
-      std::uint64_t hash = 0;
-      for (const double coordinate : corner)
-        hash = (std::rotl(hash, 23) ^ std::bit_cast<std::uint64_t>(coordinate)) * 0x9E3779B97F4A7C15U;
-      return static_cast<std::size_t>(hash ^ (hash >> 32U));
-    }
-  };
-  const std::filesystem::path& path_;
-  RawMesh& mesh_;
-  std::unordered_map<std::array<double, 3>, std::uint32_t, Hash> numbers_;
-};
+void check_count(const std::filesystem::path& path, const std::string& place, std::size_t triangles) {
+  if (triangles > most_mesh_elements) throw FileError(path, place, "has more than 2^28 triangles");
+}
 
 RawMesh parse_binary(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   if (bytes.size() < header_bytes) throw FileError(path, "header", "ends within its first 84 bytes; it is truncated");
@@ -53,19 +42,21 @@ RawMesh parse_binary(const std::filesystem::path& path, std::span<const std::byt
     throw FileError(path, "byte 80",
                     fmt::format("says {} triangles, but has bytes for {}; it is truncated or no STL", count, held));
   }
+  check_count(path, "byte 80", count);
   RawMesh mesh{.format = "stl (binary)"};
-  Welder welder(path, mesh);
+  VertexWelder welder(count / 2);  // as many as a closed surface has
+  mesh.triangles.resize(count);
+  constexpr std::size_t ahead = 8;
   for (std::size_t facet = 0; facet < count; ++facet) {
     const std::size_t begin = header_bytes + facet * facet_bytes;
-    std::array<std::uint32_t, 3> triangle{};
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      std::array<double, 3> place{};
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        place[axis] = double{std::bit_cast<float>(word_at(bytes, begin + 12 * (corner + 1) + 4 * axis))};
-      triangle[corner] = welder.number("byte " + std::to_string(begin), place);
+    for (std::size_t corner = 1; corner <= 3; ++corner) {
+      if (facet + ahead < count) welder.prefetch(place_at(bytes, begin + ahead * facet_bytes + 12 * corner));
+      const VertexWelder::Place place = place_at(bytes, begin + 12 * corner);
+      if (!is_finite(place)) refuse_vertex(path, "byte " + std::to_string(begin + 12 * corner));
+      mesh.triangles[facet][corner - 1] = welder.number(place).value;
     }
-    add_polygon(triangle, mesh);
   }
+  mesh.vertices = welder.take_vertices();
   return mesh;
 }
 
@@ -93,7 +84,7 @@ std::array<double, 3> three_numbers(const std::filesystem::path& path, TextWords
 }
 
 // After "facet": normal, three corners, "endfacet".
-std::array<std::uint32_t, 3> read_facet(const std::filesystem::path& path, TextWords& text, Welder& welder) {
+std::array<std::uint32_t, 3> read_facet(const std::filesystem::path& path, TextWords& text, VertexWelder& welder) {
   expect(path, text, "normal");
   for (int k = 0; k < 3; ++k) (void)text.word_of_text();
   expect(path, text, "outer");
@@ -102,7 +93,8 @@ std::array<std::uint32_t, 3> read_facet(const std::filesystem::path& path, TextW
   for (std::uint32_t& corner : triangle) {
     expect(path, text, "vertex");
     const std::array<double, 3> place = three_numbers(path, text);
-    corner = welder.number(text.place(), place);
+    if (!is_finite(place)) refuse_vertex(path, text.place());
+    corner = welder.number(place).value;
   }
   expect(path, text, "endloop");
   expect(path, text, "endfacet");
@@ -112,7 +104,7 @@ std::array<std::uint32_t, 3> read_facet(const std::filesystem::path& path, TextW
 RawMesh parse_text(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   RawMesh mesh{.format = "stl (text)"};
   TextWords text(bytes);
-  Welder welder(path, mesh);
+  VertexWelder welder;
   while (text.next_line()) {  // "solid NAME", its facets, "endsolid NAME"; there may be several
     const std::string_view opening = text.word();
     if (opening.empty()) continue;
@@ -120,9 +112,11 @@ RawMesh parse_text(const std::filesystem::path& path, std::span<const std::byte>
     if (!text.next_line()) fail(path, text, "endsolid", {});
     for (std::string_view word = text.word_of_text(); word != "endsolid"; word = text.word_of_text()) {
       if (word != "facet") fail(path, text, "facet", word);
-      add_polygon(read_facet(path, text, welder), mesh);
+      mesh.triangles.push_back(read_facet(path, text, welder));
     }
+    check_count(path, text.place(), mesh.triangles.size());
   }
+  mesh.vertices = welder.take_vertices();
   return mesh;
 }
 

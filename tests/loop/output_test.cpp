@@ -29,6 +29,10 @@ const std::vector<std::string> every_command = {
     "bsdf relief.gwy --incidence 20,0 --samples 1e4 -o lobe.exr --report lobe.html",
     "bsdf mesh.obj --incidence 20,0 --samples 1e4 --material conductor:0.2,3.9/0.9,2.4/1.1,1.9 -o colour.exr",
     "info mesh.obj",
+    "repair part.obj -o part.stl",
+    "slice part.obj -o part.sl1",
+    "job part.sl1",
+    "info part.stl --unit in",
     "info colour.exr",
     "bsdf-table relief.gwy --symmetry isotropic --tolerance 1 --resolution 16 -o table.exr",
     "info table.exr"};
@@ -117,6 +121,7 @@ TEST(Output, IntoAPlaceThatCannotBeWrittenFailsInWords) {
   for (const char* line : {"run small.toml --out small.toml/run", "design small.toml --out small.toml/run",
                            "synthesize pattern.toml -o small.toml/relief.gwy",
                            "synthesize pattern.toml -o missing/relief.gwy", "convert relief.gwy missing/relief.obj",
+                           "repair part.obj -o missing/part.stl", "slice part.obj -o missing/part.sl1",
                            "correct relief.gwy -o missing/relief.gwy", "mesh relief.gwy -o missing/relief.obj",
                            "measure relief.gwy -o missing/scan.al3d", "print run/job.uvj -o missing/printed.gwy",
                            "bsdf relief.gwy --incidence 20,0 --samples 1e4 -o missing/lobe.exr",

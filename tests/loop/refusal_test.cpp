@@ -51,6 +51,10 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"correct relief.gwy -o corrected.gwy --level poly:x", "poly:N"},
         Refusal{"run small.toml --set search.draws=64 --set print.patch_pixels=1024 --set print.subsamples=16", "GiB"},
         Refusal{"synthesize pattern.toml -o relief.stl", ".exr or .obj"},
+        Refusal{"repair part.obj -o mended.obj", "written as .stl"},
+        Refusal{"repair part.obj -o mended.stl --unit furlong", "--unit"},
+        Refusal{"repair small.toml -o mended.stl", ".stl, .obj, .ply and .3mf are read"},
+        Refusal{"info small.toml --unit mm", "for meshes"},
         Refusal{"print job.uvj -o printed.gwy --device dlpc900", "--device"}));
 
 INSTANTIATE_TEST_SUITE_P(

@@ -73,6 +73,8 @@ Workplace::Workplace() {
   write("small.toml", experiment);
   write("pattern.toml", pattern);
   write("printer.toml", "name = \"dlp9000\"\n");
+  // A tetrahedron without its base.
+  write("part.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
 }
 
 Ending Workplace::mezzotint(const std::vector<std::string>& arguments, const Conditions& conditions) const {

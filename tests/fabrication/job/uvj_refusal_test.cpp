@@ -153,11 +153,13 @@ TEST(UvjReader, RefusesBombsBeforeItUnpacksThem) {
       complains(archive_of(folder, config_with("\"X\": 4, \"Y\": 2", "\"X\": 65535, \"Y\": 65535")), "up to 2^28"));
   EXPECT_TRUE(
       complains(archive_of(folder, config_with("\"Layers\": 2", "\"Layers\": 100001")), "Properties.Size.Layers"));
-  EXPECT_TRUE(complains(archive_of(folder, config_with("\"X\": 4, \"Y\": 2, \"Millimeter\": {\"X\": 0.2, \"Y\": 0.1}, "
-                                                       "\"Layers\": 2",
-                                                       "\"X\": 10000, \"Y\": 10000, \"Millimeter\": {\"X\": 0.2, "
-                                                       "\"Y\": 0.2}, \"Layers\": 99999")),
-                        "more than 2^32 pixels"));
+  ForeignArchive many;
+  many.add("config.json", config_with("\"X\": 4, \"Y\": 2, \"Millimeter\": {\"X\": 0.2, \"Y\": 0.1}, \"Layers\": 2",
+                                      "\"X\": 10000, \"Y\": 10000, \"Millimeter\": {\"X\": 0.2, \"Y\": 0.2}, "
+                                      "\"Layers\": 43"));
+  for (std::size_t i = 0; i < 43; ++i) many.add(slice_member(i), "");
+  many.write(folder / "many.uvj");
+  EXPECT_TRUE(complains(folder / "many.uvj", "more than 2^32 pixels"));
 }
 
 TEST(UvjReader, NamesTheValueThatIsWrong) {
@@ -194,7 +196,8 @@ TEST(UvjReader, SurvivesScrambledConfigurations) {
     // Anything but a FileError or a job of an allowed size ends the test.
     try {
       const Job job = read_config(std::as_bytes(std::span(config)), place);
-      EXPECT_LE(job.columns * job.rows * job.layers.size(), largest_job_pixels);
+      EXPECT_LE(job.columns * job.rows, largest_layer_pixels);
+      EXPECT_LE(job.layers.size(), largest_layer_count);
     } catch (const FileError&) {
       ++refused;
     }

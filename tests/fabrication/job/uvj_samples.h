@@ -47,17 +47,21 @@ inline void put_bytes(const std::filesystem::path& path, const std::string& byte
 class ForeignArchive {
 public:
   ForeignArchive& add(const std::string& name, std::string bytes) {
-    zip_.add(name, std::make_shared<const std::string>(std::move(bytes)), ZipWriter::Packing::Deflate);
+    members_.emplace_back(name, std::move(bytes));
     return *this;
   }
   ForeignArchive& add_slice(std::size_t index, std::size_t columns, std::size_t rows, std::uint8_t gray = 7) {
     const std::vector<std::uint8_t> pixels(columns * rows, gray);
     return add("slice/0000000" + std::to_string(index) + ".png", encode_png(pixels, columns, rows, 1));
   }
-  void write(const std::filesystem::path& path) const { zip_.write(path); }
+  void write(const std::filesystem::path& path) const {
+    ZipWriter zip(path);
+    for (const auto& [name, bytes] : members_) zip.add(name, bytes, ZipWriter::Packing::Deflate);
+    zip.close();
+  }
 
 private:
-  ZipWriter zip_;
+  std::vector<std::pair<std::string, std::string>> members_;
 };
 
 }  // namespace mezzotint::test
