@@ -3,6 +3,7 @@
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 # After Eigen: CGAL's own way to find Eigen hides its target. Only fabrication/repair includes CGAL.
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
+option(BUILD_TESTING "Build the testing tree." ON)  # or CGAL's files would turn it off in a fresh build folder
 find_package(CGAL 5.5 REQUIRED)
 find_package(embree 3 REQUIRED)
 find_package(NLopt REQUIRED)

@@ -60,6 +60,7 @@ Command add_roughness(CLI::App& program);
 Command add_synthesize(CLI::App& program);
 Command add_texture_fit(CLI::App& program);
 Command add_mesh(CLI::App& program);
+Command add_expose(CLI::App& program);
 Command add_bsdf(CLI::App& program);
 Command add_bsdf_table(CLI::App& program);
 Command add_slice(CLI::App& program);
@@ -69,5 +70,6 @@ Command add_repair(CLI::App& program);
 Command add_validate(CLI::App& program);
 Command add_chart(CLI::App& program);
 Command add_gamut(CLI::App& program);
+Command add_calibrate(CLI::App& program);
 
 }  // namespace mezzotint

@@ -1,5 +1,7 @@
 #include <chrono>
+#include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -8,7 +10,9 @@
 #include "experiments/command_line/json_words.h"
 #include "experiments/command_line/option_checks.h"
 #include "experiments/command_line/part_arguments.h"
+#include "experiments/command_line/slice_appearance.h"
 #include "experiments/configuration/printer_file.h"
+#include "fabrication/appearance/slice_clothed.h"
 #include "fabrication/job/job_file.h"
 #include "fabrication/job/layer_png.h"
 #include "fabrication/part/part_file.h"
@@ -27,7 +31,8 @@ struct SliceArguments {
   double layer_mm = 0.0, rotate_deg = 0.0;
   std::vector<double> offset_mm = {0.0, 0.0};
   int supersample = 0;
-  bool linear = false, as_it_is = false;
+  bool linear = false, as_it_is = false, proximity = false;
+  AppearanceArguments appearance;
 };
 
 void add_options(CLI::App& app, SliceArguments& arguments) {
@@ -50,7 +55,15 @@ void add_options(CLI::App& app, SliceArguments& arguments) {
                  "N x N samples a pixel half-way up the layer instead of exact coverage, for comparison")
       ->check(CLI::Range(1, most_supersamples));
   app.add_flag("--no-repair", arguments.as_it_is, "Slice the triangles as they are; holes and turned ones show");
-  app.add_flag("--linear", arguments.linear, "Gray is the coverage, as other slicers do; no cure curve");
+  auto* linear = app.add_flag("--linear", arguments.linear, "Gray is the coverage, as other slicers do; no cure curve");
+  app.add_flag("--proximity-correction", arguments.proximity,
+               "Gray whose print, with the projector's blur, gives each pixel its share of the layer")
+      ->excludes(linear);
+  auto* file = app.add_option("--appearance", arguments.appearance.file,
+                              "Patterns on the part's surface (TOML); examples under experiments/appearances");
+  app.add_option("--design", arguments.appearance.design,
+                 "Folder of a design (mezzotint design): its pattern goes on the part's surface")
+      ->excludes(file);
 }
 
 SliceOptions options_of(const SliceArguments& arguments) {
@@ -61,6 +74,7 @@ SliceOptions options_of(const SliceArguments& arguments) {
   options.placement = {Angle::from_degrees(arguments.rotate_deg), Length::from_mm(arguments.offset_mm[0]),
                        Length::from_mm(arguments.offset_mm[1])};
   options.linear = arguments.linear;
+  options.proximity_correction = arguments.proximity;
   return options;
 }
 
@@ -120,16 +134,39 @@ Json to_json(const SliceSummary& summary, const SliceArguments& arguments, const
       {"open_rows", summary.total.open_rows}};
 }
 
-SliceSummary slice_to_file(const SliceArguments& arguments, const PartMesh& part, const PrinterProfile& printer,
-                           const SliceOptions& options, const Progress& progress) {
+// What proximity correction brought: RMS errors of the partly covered pixels' mean heights.
+Json to_json(const ProximityFigures& figures) {
+  const double edges = static_cast<double>(std::max<std::uint64_t>(figures.edge_pixels, 1));
+  return {{"edge_pixels", figures.edge_pixels},
+          {"error_before", Quantity{std::sqrt(figures.squares_before / edges), "µm", {}}},
+          {"error_after", Quantity{std::sqrt(figures.squares_after / edges), "µm", {}}},
+          {"needs_more_light", figures.needs_more_light},
+          {"too_much_light", figures.too_much_light},
+          {"finer_than_blur", figures.finer_than_blur}};
+}
+
+Json to_json(const ClothedPart& clothed) {
+  Json json = {{"highest", Quantity{clothed.relief.highest.um(), "µm", {}}},
+               {"surface_triangles", clothed.surface.corners.size()}};
+  if (clothed.has_field) json["field_singularities"] = clothed.singularities;
+  for (const PhaseFigures& waves : clothed.waves) {
+    json["waves"].push_back(
+        {{"wavelength_error", Quantity{waves.wavelength_error, "1", {}}}, {"defects", waves.defects}});
+  }
+  return json;
+}
+
+SliceSummary slice_to_file(const SliceArguments& arguments, const PartMesh& part, ClothedPart* clothed,
+                           const PrinterProfile& printer, const SliceOptions& options, const Progress& progress) {
   const Length layer = options.layer.value_or(printer.layer);
   JobWriter writer(frame_of(arguments, printer, layer), arguments.output);
-  const SliceSummary summary = slice_part(
-      part, printer, options, encode_layer_png,
-      [&](SlicedLayer&& sliced) {
-        writer.add(std::move(sliced.picture), sliced.packed, printer.exposure_s, sliced.top);
-      },
-      progress);
+  const TakeLayer take = [&](SlicedLayer&& sliced) {
+    writer.add(std::move(sliced.picture), sliced.packed, printer.exposure_s, sliced.top);
+  };
+  const SliceSummary summary = clothed != nullptr
+                                   ? slice_clothed(part, std::move(clothed->surface), std::move(clothed->relief),
+                                                   printer, options, encode_layer_png, take, progress)
+                                   : slice_part(part, printer, options, encode_layer_png, take, progress);
   report(progress, "archive", 0.0, "putting the layers together");
   writer.close();
   return summary;
@@ -141,10 +178,22 @@ ExitStatus slice(const SliceArguments& arguments, const CommandContext& context)
   const SliceOptions options = options_of(arguments);
   (void)job_format(arguments.output);  // complains before the part is read
   std::vector<std::string> warnings;
+  std::optional<Appearance> appearance;
+  if (arguments.appearance.given()) appearance = appearance_reader()(arguments.appearance);
   const PartMesh part = part_to_slice(arguments, warnings);
-  const SliceSummary summary = slice_to_file(arguments, part, printer, options, context.progress);
+  std::optional<ClothedPart> clothed;
+  Json relief;
+  if (appearance) {
+    report(context.progress, "appearance", 0.0, "laying the patterns on the part");
+    clothed = clothe(part, *appearance);
+    relief = to_json(*clothed);
+  }
+  const SliceSummary summary =
+      slice_to_file(arguments, part, clothed ? &*clothed : nullptr, printer, options, context.progress);
   for (std::string& warning : warnings_of(summary, options)) warnings.push_back(std::move(warning));
   Json json = to_json(summary, arguments, part, options.layer.value_or(printer.layer));
+  if (clothed) json["relief"] = relief;
+  if (options.proximity_correction) json["proximity_correction"] = to_json(summary.total.proximity);
   json["seconds"] = Quantity{std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), "s", {}};
   context.warn(warnings);
   const std::string words = in_words(json);

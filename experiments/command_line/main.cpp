@@ -10,6 +10,7 @@
 
 #include "experiments/command_line/program.h"
 #include "experiments/command_line/program_names.h"
+#include "experiments/command_line/slice_appearance.h"
 
 // The program that a user starts. It has the commands that must start at once, and becomes the program with all
 // commands for everything else: that one loads some 250 libraries for pictures of all formats, which alone takes 0.2 s
@@ -41,6 +42,14 @@ bool is_own(std::string_view command) {
   return std::find(std::begin(own_commands), std::end(own_commands), command) != std::end(own_commands);
 }
 
+// An appearance may hold pictures, which the other program alone can read.
+bool asks_for_appearance(int count, char** arguments) {
+  return std::any_of(arguments, arguments + count, [](std::string_view argument) {
+    return std::any_of(std::begin(appearance_options), std::end(appearance_options),
+                       [argument](std::string_view option) { return argument.starts_with(option); });
+  });
+}
+
 }  // namespace
 
 std::span<const AddCommand> command_table() {
@@ -48,10 +57,12 @@ std::span<const AddCommand> command_table() {
   return commands;
 }
 
+ReadAppearance appearance_reader() { return nullptr; }
+
 }  // namespace mezzotint
 
 int main(int count, char** arguments) {
   using namespace mezzotint;
-  return count > 1 && is_own(arguments[1]) && !is_one_of_many() ? run_program(count, arguments)
-                                                                : become_all_commands(arguments);
+  const bool own = count > 1 && is_own(arguments[1]) && !is_one_of_many() && !asks_for_appearance(count, arguments);
+  return own ? run_program(count, arguments) : become_all_commands(arguments);
 }

@@ -16,7 +16,6 @@
 #include "experiments/configuration/suggestion.h"
 #include "experiments/sweep/ranks.h"
 #include "experiments/version.h"
-#include "forward/base/freed_memory.h"
 #include "forward/base/progress_display.h"
 
 namespace mezzotint {
@@ -152,7 +151,6 @@ void CommandContext::warn(const std::vector<std::string>& sentences) const {
 }  // namespace mezzotint
 
 int mezzotint::run_program(int count, char** arguments) {
-  keep_freed_memory();
   std::signal(SIGINT, ask_to_stop);
   std::signal(SIGTERM, ask_to_stop);
   spdlog::set_default_logger(spdlog::stderr_color_mt("mezzotint"));

@@ -52,7 +52,41 @@ void read_ground(TomlTable table, PrinterProfile& printer) {
   table.finish();
 }
 
+std::optional<double> interval_end(TomlTable& table, std::string_view key) {
+  if (!table.has(key)) return {};
+  return table.number(key, {-1e6, 1e6});
+}
+
+std::string sha256(TomlTable& table) {
+  std::string text = table.text("source_sha256");
+  const bool is_one = text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+  if (!is_one) table.complain("source_sha256", "a SHA-256 has 64 hexadecimal digits, in lower case");
+  return text;
+}
+
+CureRecord read_record(TomlTable table) {
+  CureRecord record;
+  record.source = table.text("source");
+  record.source_sha256 = sha256(table);
+  record.steps = table.integer("steps", 2, 1000000);
+  record.alpha_um = {interval_end(table, "alpha_low_95_um"), interval_end(table, "alpha_high_95_um")};
+  record.beta_um = {interval_end(table, "beta_low_95_um"), interval_end(table, "beta_high_95_um")};
+  record.gamma = {interval_end(table, "gamma_low_95"), interval_end(table, "gamma_high_95")};
+  record.gamma_determined = table.boolean("gamma_determined");
+  record.chi_squared = table.number("chi_squared", {0.0, 1e12});
+  record.degrees_of_freedom = table.integer("degrees_of_freedom", -3, 1000000);
+  table.finish();
+  return record;
+}
+
 }  // namespace
+
+std::optional<CureRecord> read_cure_record(const std::filesystem::path& path) {
+  const TomlFile file(path);
+  TomlTable table(file);
+  if (!table.has("calibration")) return {};
+  return read_record(table.table("calibration"));
+}
 
 PrinterProfile read_printer(const std::filesystem::path& path) {
   const TomlFile file(path);
@@ -63,6 +97,7 @@ PrinterProfile read_printer(const std::filesystem::path& path) {
   read_cure(table.table("cure"), printer.cure);
   read_blur(table.table("blur"), printer);
   read_ground(table.table("ground"), printer);
+  if (table.has("calibration")) (void)read_record(table.table("calibration"));
   table.finish();
   try {
     require_valid(printer);

@@ -175,6 +175,17 @@ std::vector<std::array<double, 2>> TomlTable::pairs(std::string_view key, Range 
   return values;
 }
 
+std::vector<double> TomlTable::numbers(std::string_view key, std::size_t count, Range range) {
+  const toml::node* node = find(key);
+  if (node == nullptr) missing(key);
+  const toml::array* list = node->as_array();
+  if (list == nullptr || list->size() != count)
+    complain_at(node, fmt::format("\"{}\" is a list of {} numbers", key, count));
+  std::vector<double> values;
+  for (const toml::node& element : *list) values.push_back(checked(element, key, range));
+  return values;
+}
+
 NumberOrFree TomlTable::number_or_free(std::string_view key, Range range) {
   const toml::node* node = find(key);
   if (node == nullptr) missing(key);

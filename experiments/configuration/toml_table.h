@@ -75,6 +75,8 @@ public:
   [[nodiscard]] std::vector<std::filesystem::path> files(std::string_view key);
   [[nodiscard]] std::vector<std::array<double, 2>> pairs(std::string_view key, Range range,
                                                          const std::vector<std::array<double, 2>>& fallback);
+  /// A list of so many numbers.
+  [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count, Range range);
   [[nodiscard]] NumberOrFree number_or_free(std::string_view key, Range range);
 
   [[nodiscard]] bool is_table(std::string_view key) const;

@@ -100,7 +100,7 @@ struct UploadEstimate {
 struct ExposureReport {
   Clock::Duration requested{0};
   Clock::Duration lit{0};          ///< as the host measured it, or as the device timed it
-  Clock::Duration uncertainty{0};  ///< half of the time that the commands at both ends took
+  Clock::Duration uncertainty{0};  ///< the light was on for `lit`, give or take this at most
   bool complete = true;            ///< false where `go_on` ended it
 };
 

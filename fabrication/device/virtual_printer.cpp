@@ -30,8 +30,6 @@ void require_fits(const Job& job, const PrinterProfile& profile, const VirtualPr
                       job.led_amplitude, profile.led_amplitude));
 }
 
-bool same_picture(const JobLayer& a, const JobLayer& b) { return a.exposure_s == b.exposure_s && a.gray == b.gray; }
-
 // What stands on the platform, as seen from above.
 class Print {
 public:
@@ -41,17 +39,21 @@ public:
         options_(options),
         places_(place_layers(job, options)),
         surface_um_(size(), 0.0F),
-        cured_(size(), false) {}
+        cured_(size(), false),
+        dose_(profile.cure, size()),
+        reach_um_(size()) {}
 
+  // From the last layer down: what cures first in a column is its top.
   void add_layer(std::size_t index) {
     const LayerPlace place = places_[index];
-    const float filled_um = static_cast<float>(place.gap.um() * filled_share);
     const bool is_last = index + 1 == job_.layers.size();
-    const std::span<const float> cured_um = cure_ungapped(index);
-    for (std::size_t i = 0; i < cured_um.size(); ++i) {
-      if (cured_um[i] <= 0.0F) continue;
-      const bool filled = cured_um[i] >= filled_um && !is_last;
-      const double height_um = filled ? place.gap.um() : std::min<double>(cured_um[i], place.gap.um());
+    dose_.descend(stack_layer(profile_, job_.layers[index], place.gap), light_of(index));
+    dose_.reach_um(reach_um_);
+    const float filled_um = static_cast<float>(place.gap.um() * filled_share);
+    for (std::size_t i = 0; i < reach_um_.size(); ++i) {
+      if (cured_[i] || reach_um_[i] <= 0.0F) continue;
+      const bool filled = reach_um_[i] >= filled_um && !is_last;
+      const double height_um = filled ? place.gap.um() : std::min<double>(reach_um_[i], place.gap.um());
       // Relative to the relief's own face, where float has its finest steps.
       surface_um_[i] = static_cast<float>(height_um + (place.lower - face()).um());
       cured_[i] = true;
@@ -90,14 +92,11 @@ private:
   // The lower face of the relief.
   [[nodiscard]] Length face() const { return places_.back().lower; }
 
-  // Cured heights of a layer before its gap cuts them; those of a base are worked out once.
-  [[nodiscard]] std::span<const float> cure_ungapped(std::size_t index) {
-    if (index == 0 || !same_picture(job_.layers[index], job_.layers[index - 1])) {
-      const Length no_cut = Length::from_um(1e6);
-      const PrinterProfile adapted = profile_of_layer(profile_, job_.layers[index], no_cut);
-      cured_um_ = print_layer(layer_image(job_, index), adapted, {options_.subsamples, Surround::Dark});
-    }
-    return cured_um_->heights_um();
+  // The light of a layer; that of a base is worked out once.
+  [[nodiscard]] std::span<const float> light_of(std::size_t index) {
+    if (!light_ || job_.layers[index].gray != job_.layers[index + 1].gray)
+      light_ = spread_light(layer_image(job_, index), profile_, {options_.subsamples, Surround::Dark});
+    return light_->values;
   }
 
   const Job& job_;
@@ -106,7 +105,9 @@ private:
   std::vector<LayerPlace> places_;
   std::vector<float> surface_um_;
   std::vector<bool> cured_;
-  std::optional<HeightField> cured_um_;
+  DepthDose dose_;
+  std::vector<float> reach_um_;
+  std::optional<GrayImage> light_;
 };
 
 }  // namespace
@@ -114,12 +115,13 @@ private:
 HeightField print_virtually(const Job& job, const PrinterProfile& profile, const VirtualPrinterOptions& options,
                             const Progress& progress) {
   require_fits(job, profile, options);
-  require_no_overhang(job, profile);
+  require_height_field(job, profile);
   Print print(job, profile, options);
   const auto count = static_cast<double>(job.layers.size());
-  for (std::size_t i = 0; i < job.layers.size(); ++i) {
-    report(progress, "print", static_cast<double>(i) / count, fmt::format("layer {}", i + 1));
-    print.add_layer(i);
+  for (std::size_t done = 0; done < job.layers.size(); ++done) {
+    const std::size_t index = job.layers.size() - 1 - done;
+    report(progress, "print", static_cast<double>(done) / count, fmt::format("layer {}", index + 1));
+    print.add_layer(index);
   }
   print.show_platform();
   print.add_ground_where_cured();

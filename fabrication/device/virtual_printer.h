@@ -22,14 +22,17 @@ struct VirtualPrinterOptions {
 ///          sample (0, 0) lies half a sub-pixel inside of it.
 /// Shape    columns·subsamples × rows·subsamples of the job's picture, dark margin included; not periodic. Where
 ///          nothing cured the platform is seen.
-/// Model    Each layer's light is blurred, dark around the picture; it cures up to the gap that the platform left
-///          (the job's step plus its error). z = lower face of the topmost layer that cures there + its cured
-///          height. A layer under others that cures 0.9 of its gap or more counts as filled: the light of the
-///          next one reaches through (17.81 of 18 µm at the slides' full gray). A layer's exposure counts against
-///          the profile's: k times as long moves α by β ln k. No dose is carried from layer to layer.
-/// Errors   MethodError where a pixel cures above one that did not fill its layer (the one-layer process model
-///          knows no overhang; each pixel is taken at its own gray there, so that the blurred rim is none);
-///          InvalidInput where the job does not fit the profile (pixel pitch, picture size, LED amplitude).
+/// Model    Each layer's light is blurred, dark around the picture, and goes on into the layers below it, where
+///          doses add up (DepthDose): a terrace under dark layers grows by their stray light, and resin below an
+///          overhang cures downward. z = lower face of the topmost layer that cures in a column + its cured height, up
+///          to the gap that the platform left (the job's step plus its error). A layer under others that cures 0.9 of
+///          its gap or more counts as filled (17.83 of 18 µm at the slides' full gray under dark layers). A layer's
+///          exposure counts against the profile's: k times as long moves α by β ln k.
+/// Overhang what cures above a void must fill its own layer and hold on to a neighbour; from above its top is seen.
+///          What it cures below itself is in StackProcess, not in this height field.
+/// Errors   MethodError where the top is no height field over the part: see `require_height_field` (each pixel is
+///          taken at its own gray there, so that the blurred rim is none); InvalidInput where the job does not fit the
+///          profile (pixel pitch, picture size, LED amplitude).
 [[nodiscard]] HeightField print_virtually(const Job& job, const PrinterProfile& profile,
                                           const VirtualPrinterOptions& options, const Progress& progress = {});
 

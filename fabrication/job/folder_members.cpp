@@ -23,7 +23,7 @@ fs::path without_trailing_slash(const fs::path& path) { return path.has_filename
 
 }  // namespace
 
-FolderWriter::FolderWriter(fs::path path) : path_(without_trailing_slash(path)) {
+FolderWriter::FolderWriter(const fs::path& path) : path_(without_trailing_slash(path)) {
   temporary_ = path_.parent_path() / ("." + path_.filename().string() + ".part" + std::to_string(::getpid()));
   std::error_code problem;
   const bool is_free =

@@ -14,7 +14,7 @@ class FolderWriter final : public MemberOutput {
 public:
   /// @throws InvalidInput where there is something of that name already (an empty folder is taken), DeviceError where
   ///         nothing can be made there.
-  explicit FolderWriter(std::filesystem::path path);
+  explicit FolderWriter(const std::filesystem::path& path);
   ~FolderWriter() override;
 
   void add(const std::string& name, std::string_view bytes, Packing packing) override;

@@ -35,7 +35,7 @@ public:
   /// @param frame  the job without its layers
   /// @throws InvalidInput for a job that is not valid, or a path of no known format or that is taken;
   ///         DeviceError where the folder cannot be written.
-  JobWriter(Job frame, std::filesystem::path path);
+  JobWriter(Job frame, const std::filesystem::path& path);
   ~JobWriter();
 
   /// @param png  the picture by `encode_layer_png`, which may be done for several layers at a time

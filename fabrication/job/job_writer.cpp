@@ -137,7 +137,8 @@ private:
   double lit_ = 0.0;  ///< pixels × gray / 255
 };
 
-JobWriter::JobWriter(Job frame, std::filesystem::path path) : impl_(std::make_unique<Impl>(std::move(frame), path)) {}
+JobWriter::JobWriter(Job frame, const std::filesystem::path& path)
+    : impl_(std::make_unique<Impl>(std::move(frame), path)) {}
 JobWriter::~JobWriter() = default;
 void JobWriter::add(LayerPicture picture, std::string_view png, double exposure_s, Length top) {
   impl_->add(std::move(picture), png, exposure_s, top);

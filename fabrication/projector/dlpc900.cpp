@@ -75,6 +75,7 @@ private:
 
 void Dlpc900::connect() {
   link_.drain();
+  wake(link_, clock_);
   link_.set(Command::LedEnable, {leds_off});
   hardware_ = identify(link_);
   require_healthy(read_hardware_status(link_), hardware_.controllers);
@@ -194,8 +195,8 @@ void Dlpc900::fail_exposure(const LightEngineError& cause) {
   const auto exposure = exposure_;
   exposure_ = {};
   Clock::Duration most = lit_.ordered ? now - *lit_.ordered : none;
-  // The device ends an uploaded layer by itself, also where it cannot be reached.
-  if (uploads()) most = std::min(most, exposure);
+  // The device ends an uploaded layer by itself, also where it cannot be reached; unless it was seen not to.
+  if (uploads() && !dark && lit_.ordered) most = std::min(most, std::max(exposure, lit_.seen_lit - *lit_.ordered));
   Clock::Duration least = lit_.on ? std::max(lit_.seen_lit, lit_.on->latest) - lit_.on->latest : none;
   least = std::min({least, most, failed_at - (lit_.on ? lit_.on->latest : failed_at)});
   throw ExposureError(cause, least, most, dark);
@@ -239,9 +240,9 @@ Moment Dlpc900::start_light() {
 
 ExposureReport Dlpc900::light_by_host(const std::function<bool()>& go_on) {
   const Moment on = start_light();
-  const bool complete = watch(on.middle() + exposure_, go_on);
+  const bool complete = watch(on.earliest + exposure_, go_on);
   const Moment off = switch_leds(link_, clock_, leds_off);
-  return {.lit = off.middle() - on.middle(), .uncertainty = on.uncertainty() + off.uncertainty(), .complete = complete};
+  return {.lit = between(on, off), .uncertainty = uncertainty_between(on, off), .complete = complete};
 }
 
 void Dlpc900::start_uploaded_sequence() {
@@ -292,8 +293,8 @@ ExposureReport Dlpc900::light_by_device(const std::function<bool()>& go_on) {
     const Moment off = switch_leds(link_, clock_, leds_off);
     stop_sequence();
     report.complete = false;
-    report.lit = std::min(off.middle() - on.middle(), exposure_);
-    report.uncertainty = on.uncertainty() + off.uncertainty();
+    report.lit = std::min(between(on, off), exposure_);
+    report.uncertainty = uncertainty_between(on, off);
   }
   // An end that came late is seen here too: no error may have been raised on the way.
   require_healthy(read_hardware_status(link_), hardware_.controllers);

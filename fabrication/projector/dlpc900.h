@@ -29,7 +29,7 @@ struct Dlpc900Options {
 
 /// A projector with TI's DLPC900 controllers: DLP9000 (two of them, 2560 × 1600) or DLP6500 (one, 1920 × 1080).
 ///
-/// Exposure   Video: the host switches the LEDs; `uncertainty` is half of what the two orders took. Upload: the
+/// Exposure   Video: the host switches the LEDs; `uncertainty` is what the longer of the two orders took. Upload: the
 ///            device times it; `uncertainty` is how closely the host saw it end.
 /// Faults     LightEngine's. A setting that does not read back stops the print: a device that reset itself has a
 ///            lower LED current than it was given. What has no read form (pattern entries, image data) is trusted

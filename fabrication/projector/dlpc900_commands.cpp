@@ -1,6 +1,7 @@
 #include "fabrication/projector/dlpc900_commands.h"
 
 #include <array>
+#include <utility>
 
 #include "forward/base/error.h"
 
@@ -12,51 +13,32 @@ bool bit(std::uint8_t byte, int index) { return (byte >> index & 1) != 0; }
 }  // namespace
 
 std::string_view command_name(Command command) {
-  switch (command) {
-    case Command::ErrorCode:
-      return "error code";
-    case Command::ErrorText:
-      return "error text";
-    case Command::FirmwareVersion:
-      return "firmware version";
-    case Command::HardwareAndTag:
-      return "hardware and tag";
-    case Command::LedCurrents:
-      return "LED currents";
-    case Command::FlipLongAxis:
-      return "flip of the long axis";
-    case Command::FlipShortAxis:
-      return "flip of the short axis";
-    case Command::InputSource:
-      return "input source";
-    case Command::VideoReceiver:
-      return "video receiver";
-    case Command::LedPolarity:
-      return "LED polarity";
-    case Command::LedEnable:
-      return "LED enable";
-    case Command::HardwareStatus:
-      return "hardware status";
-    case Command::MainStatus:
-      return "main status";
-    case Command::DisplayMode:
-      return "display mode";
-    case Command::Sequence:
-      return "start or stop";
-    case Command::PrimaryImageStart:
-      return "begin of the primary's image";
-    case Command::PrimaryImageData:
-      return "data of the primary's image";
-    case Command::SecondaryImageStart:
-      return "begin of the secondary's image";
-    case Command::SecondaryImageData:
-      return "data of the secondary's image";
-    case Command::PatternTable:
-      return "pattern table";
-    case Command::PatternEntry:
-      return "pattern entry";
-    case Command::Degamma:
-      return "degamma";
+  static constexpr std::pair<Command, std::string_view> names[] = {
+      {Command::ErrorCode, "error code"},
+      {Command::ErrorText, "error text"},
+      {Command::PowerMode, "power mode"},
+      {Command::FirmwareVersion, "firmware version"},
+      {Command::HardwareAndTag, "hardware and tag"},
+      {Command::LedCurrents, "LED currents"},
+      {Command::FlipLongAxis, "flip of the long axis"},
+      {Command::FlipShortAxis, "flip of the short axis"},
+      {Command::InputSource, "input source"},
+      {Command::VideoReceiver, "video receiver"},
+      {Command::LedPolarity, "LED polarity"},
+      {Command::LedEnable, "LED enable"},
+      {Command::HardwareStatus, "hardware status"},
+      {Command::MainStatus, "main status"},
+      {Command::DisplayMode, "display mode"},
+      {Command::Sequence, "start or stop"},
+      {Command::PrimaryImageStart, "begin of the primary's image"},
+      {Command::PrimaryImageData, "data of the primary's image"},
+      {Command::SecondaryImageStart, "begin of the secondary's image"},
+      {Command::SecondaryImageData, "data of the secondary's image"},
+      {Command::PatternTable, "pattern table"},
+      {Command::PatternEntry, "pattern entry"},
+      {Command::Degamma, "degamma"}};
+  for (const auto& [known, name] : names) {
+    if (known == command) return name;
   }
   return "unknown command";
 }

@@ -12,6 +12,7 @@ namespace mezzotint::dlpc900 {
 enum class Command : std::uint16_t {
   ErrorCode = 0x0100,
   ErrorText = 0x0101,
+  PowerMode = 0x0200,
   FirmwareVersion = 0x0205,
   HardwareAndTag = 0x0206,
   LedCurrents = 0x0b01,

@@ -38,7 +38,8 @@ Clock::Duration Link::remaining(Clock::Duration deadline) const {
 }
 
 Link::Reply Link::exchange(Message message, std::size_t largest_reply, Clock::Duration deadline) {
-  message.sequence = ++sequence_;
+  if (++sequence_ == 0) ++sequence_;  // 0 is what the rest of a long, late answer looks like
+  message.sequence = sequence_;
   for (const auto& report : encode_message(message)) transport_->send(report, remaining(deadline));
   return receive_reply(message, largest_reply, deadline);
 }

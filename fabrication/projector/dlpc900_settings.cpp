@@ -6,6 +6,8 @@ namespace mezzotint::dlpc900 {
 namespace {
 
 constexpr std::size_t version_bytes = 16, hardware_bytes = 33;
+constexpr auto wake_time = std::chrono::seconds(130);
+constexpr auto wake_poll = std::chrono::seconds(1);
 constexpr auto lock_time = std::chrono::seconds(5);
 constexpr auto lock_poll = std::chrono::milliseconds(100);
 constexpr auto mode_change_time = std::chrono::milliseconds(350);  // 300 in the guide; earlier answers are not true
@@ -68,11 +70,27 @@ Hardware identify(Link& link) {
   return hardware;
 }
 
+void wake(Link& link, Clock& clock) {
+  constexpr std::uint8_t normal = 0;
+  const auto deadline = clock.now() + wake_time;
+  while (link.read(Command::PowerMode, 1)[0] != normal) {
+    if (clock.now() >= deadline) throw LightEngineError(LightFault::Timeout, "the projector does not leave standby");
+    try {
+      link.order(Command::PowerMode, {normal});
+    } catch (const LightEngineError& error) {
+      if (error.fault() != LightFault::Refused) throw;
+    }
+    clock.sleep_for(wake_poll);
+  }
+}
+
 std::vector<Setting> settings_that_read_back(const LightSettings& settings, const Dlpc900Options& options) {
   const auto current = static_cast<std::uint8_t>(settings.led_amplitude);
   const auto flag = [](bool value) { return std::vector<std::uint8_t>{static_cast<std::uint8_t>(value ? 1 : 0)}; };
   std::vector<Setting> list = {{Command::LedCurrents, {current, current, current}},
                                {Command::LedPolarity, flag(options.led_polarity_inverted)},
+                               // Off, and by force: after a reset the sequencer has them, and a start would light them.
+                               {Command::LedEnable, {leds_off}},
                                {Command::FlipLongAxis, flag(settings.flip_columns)},
                                {Command::FlipShortAxis, flag(settings.flip_rows)}};
   if (options.way == Dlpc900Options::Way::Video) {

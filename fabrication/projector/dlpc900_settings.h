@@ -15,6 +15,11 @@ struct Hardware {
 /// @throws LightEngineError Incompatible for mirrors that the driver does not know.
 [[nodiscard]] Hardware identify(Link& link);
 
+/// Out of standby. A projector that has just gone there parks its mirrors first, for two minutes, and hears nothing
+/// else.
+/// @throws LightEngineError Timeout where it does not wake.
+void wake(Link& link, Clock& clock);
+
 struct Setting {
   Command command;
   std::vector<std::uint8_t> data;

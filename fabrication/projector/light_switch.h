@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "fabrication/projector/dlpc900_link.h"
 
 namespace mezzotint::dlpc900 {
@@ -7,9 +9,14 @@ namespace mezzotint::dlpc900 {
 /// Something happened between two moments.
 struct Moment {
   Clock::Duration earliest{0}, latest{0};
-  [[nodiscard]] Clock::Duration middle() const { return earliest + (latest - earliest) / 2; }
-  [[nodiscard]] Clock::Duration uncertainty() const { return (latest - earliest) / 2; }
 };
+
+/// From one to the other. Two orders take the same way to the device, so that begin to begin is closer than middle to
+/// middle, where half of an acknowledgement would be counted as light; and how far off that can be.
+[[nodiscard]] inline Clock::Duration between(const Moment& on, const Moment& off) { return off.earliest - on.earliest; }
+[[nodiscard]] inline Clock::Duration uncertainty_between(const Moment& on, const Moment& off) {
+  return std::max(on.latest - on.earliest, off.latest - off.earliest);
+}
 
 /// Orders the LEDs and reads back, up to three times; answers when they changed.
 /// @throws LightEngineError IgnoredSetting where they never do, and what the link throws.

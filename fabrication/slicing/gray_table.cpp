@@ -11,6 +11,7 @@ namespace mezzotint {
 
 GrayTable GrayTable::linear() {
   std::vector<Yield> yields;
+  yields.reserve(256);
   for (int level = 0; level < 256; ++level) yields.push_back({level / 255.0, static_cast<std::uint8_t>(level)});
   return GrayTable(yields);
 }

@@ -32,9 +32,12 @@ public:
         rows_(profile.pixels_y),
         layer_(options.layer.value_or(profile.layer)),
         table_(gray_table(profile, options)),
+        profile_(profile),
+        proximity_(options.proximity_correction),
         rasters_([window, coverage = options.coverage] { return SlabRaster(window.columns, window.rows, coverage); }) {
     require(window.column + window.columns <= columns_ && window.row + window.rows <= rows_,
             "the window of the slices does not lie in the printer's field");
+    require(!proximity_ || !options.linear, "linear gray knows no cure curve, so that proximity cannot be corrected");
   }
 
   [[nodiscard]] const GrayTable& table() const { return table_; }
@@ -46,30 +49,52 @@ public:
     feed([&raster](std::span<const RasterTriangle> triangles) { raster.add(triangles); });
     SlicedLayer sliced{.index = index, .top = layer_ * static_cast<double>(index + 1)};
     LayerPictureBuilder builder(columns_, rows_);
+    std::vector<float> coverage(proximity_ ? window_.columns * window_.rows : 0, 0.0F);
     sliced.figures.open_rows = raster.finish([&](std::size_t row, std::span<const CoverageRun> runs) {
-      builder.begin_row(row + window_.row);
-      for (const CoverageRun& run : runs) add(run, builder, sliced.figures);
+      if (!proximity_) builder.begin_row(row + window_.row);
+      for (const CoverageRun& run : runs) {
+        count(run, sliced.figures);
+        if (proximity_)
+          std::fill_n(coverage.begin() + static_cast<std::ptrdiff_t>(row * window_.columns + run.begin),
+                      run.end - run.begin, run.coverage);
+        else
+          add(run.begin, run.end, table_.level(run.coverage), builder, sliced.figures);
+      }
     });
+    if (proximity_) correct(coverage, builder, sliced.figures);
     sliced.picture = builder.finish();
     if (pack) sliced.packed = pack(sliced.picture);
     return sliced;
   }
 
 private:
-  void add(const CoverageRun& run, LayerPictureBuilder& builder, SliceFigures& figures) const {
-    const std::uint8_t level = table_.level(run.coverage);
+  void count(const CoverageRun& run, SliceFigures& figures) const {
     const std::uint64_t length = run.end - run.begin;
-    builder.add(run.begin + window_.column, run.end + window_.column, level);
     figures.coverage_pixels += double{run.coverage} * static_cast<double>(length);
-    figures.gray_sum += length * level;
-    if (level > 0) figures.lit_pixels += length;
     if (table_.saturates(run.coverage)) figures.saturated += length;
+  }
+  void add(std::size_t begin, std::size_t end, std::uint8_t level, LayerPictureBuilder& builder,
+           SliceFigures& figures) const {
+    builder.add(begin + window_.column, end + window_.column, level);
+    figures.gray_sum += (end - begin) * level;
+    if (level > 0) figures.lit_pixels += end - begin;
+  }
+  void correct(const std::vector<float>& coverage, LayerPictureBuilder& builder, SliceFigures& figures) const {
+    const ProximityLayer corrected = correct_layer(coverage, window_, profile_, layer_);
+    figures.proximity = corrected.figures;
+    for (std::size_t row = 0; row < window_.rows; ++row) {
+      builder.begin_row(row + window_.row);
+      for (std::size_t column = 0; column < window_.columns; ++column)
+        add(column, column + 1, corrected.levels[row * window_.columns + column], builder, figures);
+    }
   }
 
   PixelWindow window_;
   std::size_t columns_, rows_;
   Length layer_;
   GrayTable table_;
+  PrinterProfile profile_;
+  bool proximity_;
   tbb::enumerable_thread_specific<SlabRaster> rasters_;
 };
 
@@ -84,6 +109,7 @@ SliceFigures& SliceFigures::operator+=(const SliceFigures& other) {
   gray_sum += other.gray_sum;
   saturated += other.saturated;
   open_rows += other.open_rows;
+  proximity += other.proximity;
   return *this;
 }
 

@@ -204,16 +204,6 @@ SlopeModel fresh_model(const DesignProblem& problem, const PrinterProfile& print
           {.levels = GrayLevels::Quantized, .drawn_ground = true, .place_x = 0.23, .place_y = 0.71}};
 }
 
-PatchOptions searched_patch(const DesignProblem& problem) {
-  const PixelSpread& spread = problem.printer.spread;
-  PatchOptions patch = problem.patch;
-  if (spread.kernel == PixelSpread::Kernel::Gaussian && spread.width.um() > 0.0) {
-    const double enough = std::max(2.0, std::ceil(problem.printer.pixel_pitch / spread.width - 1e-9));
-    if (enough < static_cast<double>(patch.subsamples)) patch.subsamples = static_cast<std::size_t>(enough);
-  }
-  return patch;
-}
-
 std::vector<std::uint64_t> search_seeds(const DesignProblem& problem) {
   require(problem.search_draws >= 1 && problem.search_draws <= 256, "a search takes 1 to 256 draws");
   return consecutive_seeds(problem.search.seed * seed_stride, problem.search_draws);
@@ -236,11 +226,10 @@ Design find_design(const DesignProblem& problem, const Progress& progress) {
   const SearchPlan plan = plan_of(problem);
   std::optional<EvaluationLog> log;
   if (!problem.log.empty()) log.emplace(problem.log, problem.log_digest);
-  const PatchOptions patch = searched_patch(problem);
-  design.search = search_pattern(goal, problem.pattern, design.variables, problem.printer, patch, plan,
+  design.search = search_pattern(goal, problem.pattern, design.variables, problem.printer, problem.patch, plan,
                                  log ? &*log : nullptr, progress);
   if (problem.by_light) {
-    polish_traced(goal, problem.pattern, design.variables, problem.printer, patch, plan, problem.traced,
+    polish_traced(goal, problem.pattern, design.variables, problem.printer, problem.patch, plan, problem.traced,
                   log ? &*log : nullptr, design.search, progress);
   }
   design.pattern = with_values(problem.pattern, design.variables, design.search.values);

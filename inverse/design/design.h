@@ -78,11 +78,6 @@ struct Design {
 [[nodiscard]] SlopeModel fresh_model(const DesignProblem& problem, const PrinterProfile& printer,
                                      const std::vector<std::uint64_t>& seeds);
 
-/// The problem's patch with no more samples than a search needs: 1/σ a pixel (σ the Gaussian blur's width in pixels),
-/// at least 2. What the light holds above half of that is below a hundredth of its contrast. Verdicts and intervals
-/// take the problem's own.
-[[nodiscard]] PatchOptions searched_patch(const DesignProblem& problem);
-
 /// The problem's variables with their starts.
 [[nodiscard]] std::vector<Variable> search_variables(const DesignProblem& problem);
 

@@ -44,6 +44,16 @@ struct Evaluation {
   SlopeCovariance covariance;
 };
 
+// Enough to tell valleys apart, with few draws: 1/σ samples a pixel (σ the Gaussian blur's width in pixels) hold all
+// but a hundredth of the light's contrast. The cure curve's logarithm sharpens what it makes of it, so that a lobe may
+// be off by a few per cent: the last searches take the patch's own samples.
+PatchOptions coarse(PatchOptions patch, const PrinterProfile& printer) {
+  if (printer.spread.kernel != PixelSpread::Kernel::Gaussian || printer.spread.width.um() <= 0.0) return patch;
+  const double enough = std::max(2.0, std::ceil(printer.pixel_pitch / printer.spread.width - 1e-9));
+  if (enough < static_cast<double>(patch.subsamples)) patch.subsamples = static_cast<std::size_t>(enough);
+  return patch;
+}
+
 std::vector<std::uint64_t> first_of(const std::vector<std::uint64_t>& seeds, std::size_t count) {
   return {seeds.begin(), seeds.begin() + static_cast<std::ptrdiff_t>(std::min(count, seeds.size()))};
 }
@@ -62,7 +72,7 @@ public:
         progress_(progress),
         moments_(pattern, variables, printer, patch.wavelength),
         fine_{model_of(printer, patch, plan.seeds), 1.0},
-        coarse_{model_of(printer, patch, first_of(plan.seeds, plan.coarse_draws)), 1.0} {
+        coarse_{model_of(printer, coarse(patch, printer), first_of(plan.seeds, plan.coarse_draws)), 1.0} {
     coarse_.cost = coarse_.model.samples() / fine_.model.samples();
   }
 

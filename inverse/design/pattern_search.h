@@ -54,7 +54,7 @@ struct SearchOutcome {
 /// 2  Where that is not enough (a shape is asked for, or the moments do not lead there): a scan of places spread over
 /// the
 ///    box, each first moved to where its moments fit, all directions among them, the swap of the axes too; on few
-///    draws.
+///    draws and few samples.
 /// 3  Local searches from the best of them, on few draws; then from the best on all draws.
 /// 4  With an objective of its own choice: cube root and moments where the shape is within reach (the residual says
 /// so),

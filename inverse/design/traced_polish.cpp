@@ -99,7 +99,7 @@ private:
     SearchPlan plan = plan_;
     plan.from_start = true;
     plan.objective = outcome_.lowered;
-    plan.search.max_evaluations = 8 * static_cast<int>(variables.size());
+    plan.search.max_evaluations = 4 * static_cast<int>(variables.size());
     const SearchOutcome found = search_pattern(DesignGoal(goal_.target(), lobes, true), pattern_, variables, printer_,
                                                patch_, plan, log_, progress_);
     outcome_.history.insert(outcome_.history.end(), found.history.begin(), found.history.end());

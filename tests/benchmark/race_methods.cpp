@@ -120,7 +120,6 @@ RaceResult ladder(const RaceMethod& method, const Family& family, const LobeTarg
   problem.search.seed = seed;
   const DesignGoal goal = goal_of(lobes);
   problem.target = goal.target();
-  problem.patch = searched_patch(problem);
   SearchPlan plan;
   plan.search = problem.search;
   plan.search.algorithm = word(method, "algorithm", plan.search.algorithm);

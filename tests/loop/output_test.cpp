@@ -30,6 +30,8 @@ const std::vector<std::string> every_command = {
     "bsdf mesh.obj --incidence 20,0 --samples 1e4 --material conductor:0.2,3.9/0.9,2.4/1.1,1.9 -o colour.exr",
     "info mesh.obj",
     "repair part.obj -o part.stl",
+    "slice part.obj -o part.sl1",
+    "job part.sl1",
     "info part.stl --unit in",
     "info colour.exr",
     "bsdf-table relief.gwy --symmetry isotropic --tolerance 1 --resolution 16 -o table.exr",
@@ -116,14 +118,14 @@ TEST(Output, IntoAPlaceThatCannotBeWrittenFailsInWords) {
   ASSERT_EQ(here.mezzotint(words("run small.toml --out run")).status, 0);
   ASSERT_EQ(here.mezzotint(words("synthesize pattern.toml -o relief.gwy")).status, 0);
   const Files before = here.files();
-  for (const char* line :
-       {"run small.toml --out small.toml/run", "design small.toml --out small.toml/run",
-        "synthesize pattern.toml -o small.toml/relief.gwy", "synthesize pattern.toml -o missing/relief.gwy",
-        "convert relief.gwy missing/relief.obj", "repair part.obj -o missing/part.stl",
-        "correct relief.gwy -o missing/relief.gwy", "mesh relief.gwy -o missing/relief.obj",
-        "measure relief.gwy -o missing/scan.al3d", "print run/job.uvj -o missing/printed.gwy",
-        "bsdf relief.gwy --incidence 20,0 --samples 1e4 -o missing/lobe.exr",
-        "validate run/design.gwy --measured run/measured.gwy -o small.toml"}) {
+  for (const char* line : {"run small.toml --out small.toml/run", "design small.toml --out small.toml/run",
+                           "synthesize pattern.toml -o small.toml/relief.gwy",
+                           "synthesize pattern.toml -o missing/relief.gwy", "convert relief.gwy missing/relief.obj",
+                           "repair part.obj -o missing/part.stl", "slice part.obj -o missing/part.sl1",
+                           "correct relief.gwy -o missing/relief.gwy", "mesh relief.gwy -o missing/relief.obj",
+                           "measure relief.gwy -o missing/scan.al3d", "print run/job.uvj -o missing/printed.gwy",
+                           "bsdf relief.gwy --incidence 20,0 --samples 1e4 -o missing/lobe.exr",
+                           "validate run/design.gwy --measured run/measured.gwy -o small.toml"}) {
     const Ending ending = here.mezzotint(words(std::string(line) + " --quiet"));
     EXPECT_EQ(ending.status, 1) << line << "\n" << ending.err;
     EXPECT_EQ(ending.out, "") << line;

@@ -113,7 +113,7 @@ TEST(VirtualPrinter, KeepsTheFrameThroughTheArchive) {
   EXPECT_EQ(index / read.columns() / 4, margin + 12);
 }
 
-TEST(VirtualPrinter, RefusesOverhangsAndVoids) {
+TEST(VirtualPrinter, RefusesIslandsAndVoids) {
   const PrinterProfile profile = without_ground();
   const GrayImage relief{8, 8, std::vector<float>(64, 0.5F)};
   Job job = make_patch_job("patch", relief, profile, {2, margin});
@@ -126,6 +126,45 @@ TEST(VirtualPrinter, RefusesOverhangsAndVoids) {
   job = make_patch_job("patch", relief, profile, {2, margin});
   job.layers[2].gray[0] = 42;  // below the threshold of 43: nothing cures there
   EXPECT_NO_THROW((void)print_virtually(job, profile, exact_stage()));
+}
+
+// A ledge of full gray at the second of four layers, two pixels out from the wall.
+Job ledge_job(const PrinterProfile& profile, std::uint8_t ledge) {
+  const GrayImage block{10, 10, std::vector<float>(100, 1.0F)};
+  Job job = make_patch_job("ledge", block, profile, {3, margin});
+  for (std::size_t row = margin; row < margin + 10; ++row) {
+    for (std::size_t column = margin + 10; column < margin + 14; ++column)
+      job.layers[2].gray[row * job.columns + column] = ledge;
+  }
+  return job;
+}
+
+TEST(VirtualPrinter, SeesAnOverhangFromAbove) {
+  const PrinterProfile profile = without_ground();
+  const HeightField print = print_virtually(ledge_job(profile, 255), profile, exact_stage());
+  // On the ledge, 2 pixels = 4σ from its sides: the top of the third layer, filled, is the relief's lower face.
+  EXPECT_NEAR(print.at(4 * (margin + 12), 4 * (margin + 5)), 0.0, 1e-4);
+  EXPECT_NEAR(print.at(4 * (margin + 5), 4 * (margin + 5)), 17.8119, 1e-4);
+  EXPECT_THROW((void)print_virtually(ledge_job(profile, 120), profile, exact_stage()), MethodError);
+}
+
+// A step of half gray, under three layers that are dark there: their stray light reaches it. Closed form of the sum.
+TEST(VirtualPrinter, LetsTheStrayLightOfDarkLayersReachATerrace) {
+  const PrinterProfile profile = without_ground();
+  Job job = make_patch_job("terrace", {24, 12, std::vector<float>(24 * 12, 1.0F)}, profile, {5, margin});
+  for (std::size_t layer = 2; layer < 6; ++layer) {
+    for (std::size_t row = 0; row < job.rows; ++row) {
+      for (std::size_t column = margin + 12; column < job.columns; ++column) {
+        std::uint8_t& gray = job.layers[layer].gray[row * job.columns + column];
+        gray = layer == 2 && gray == 255 ? 100 : 0;
+      }
+    }
+  }
+  const HeightField print = print_virtually(job, profile, exact_stage());
+  const double q = std::exp(-18.0 / 10.24), own = 100.0 / 255.0 + 0.01, stray = 0.01 * (q + q * q + q * q * q);
+  const double height_um = 36.0 - 90.0 + 17.71 + 10.24 * std::log(own + stray);
+  EXPECT_NEAR(print.at(4 * (margin + 18), 4 * (margin + 6)), height_um, 2e-5);
+  EXPECT_GT(10.24 * std::log(1.0 + stray / own), 0.05);  // which is no rounding
 }
 
 TEST(VirtualPrinter, DrawsItsPlatformStepsFromTheirDistribution) {

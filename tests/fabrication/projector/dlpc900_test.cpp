@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "tests/fabrication/projector/emulated_transport.h"
+#include "tests/fabrication/projector/emulated_window.h"
 
 namespace mezzotint {
 namespace {
@@ -12,21 +13,6 @@ namespace {
 using emulator::Fault;
 using std::chrono::milliseconds;
 using Way = Dlpc900Options::Way;
-
-/// A window whose pixels are the emulated projector's video.
-class EmulatedWindow final : public LayerWindow {
-public:
-  EmulatedWindow(emulator::DeviceModel& device, std::size_t columns, std::size_t rows)
-      : device_(device), columns_(columns), rows_(rows) {}
-  [[nodiscard]] std::size_t columns() const override { return columns_; }
-  [[nodiscard]] std::size_t rows() const override { return rows_; }
-  void show(const LayerPicture& picture) override { device_.show_video({picture.gray.begin(), picture.gray.end()}); }
-  void blank() override { device_.show_video(emulator::Bytes(columns_ * rows_, 0)); }
-
-private:
-  emulator::DeviceModel& device_;
-  std::size_t columns_, rows_;
-};
 
 /// The smaller of the two projectors, so that pictures are cheap; the pair of controllers has tests of its own.
 class Dlpc900Test : public testing::TestWithParam<Way> {
@@ -107,6 +93,17 @@ TEST_P(Dlpc900Test, LightsTheVeryPictureForItsTimeAndNeverElse) {
   EXPECT_LE(std::abs((lit - exposure).count()), 2'000'000) << "two commands of a millisecond";
   EXPECT_GE(log[0].on, before);
   EXPECT_FALSE(device.light_is_on());
+}
+
+TEST_P(Dlpc900Test, WaitsForAProjectorThatHasJustGoneToStandby) {
+  engine.reset();
+  device.stand_by();
+  const auto begin = clock.now();
+  connect();
+  EXPECT_NEAR(in_seconds(clock.now() - begin), 123.0, 3.0);
+  show();
+  static_cast<void>(engine->expose(always));
+  EXPECT_EQ(device.light_log().back().picture, gray);
 }
 
 TEST_P(Dlpc900Test, APictureIsLitOnce) {

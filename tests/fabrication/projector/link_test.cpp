@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "fabrication/projector/dlpc900_link.h"
 #include "tests/fabrication/projector/emulated_transport.h"
 
@@ -151,6 +153,45 @@ TEST_F(LinkFaults, AnIgnoredSettingIsFound) {
   device.script({Fault::IgnoreWrite, 0x0b01, 3});
   EXPECT_EQ(fault_of([&] { link.set(Command::LedCurrents, {4, 5, 6}); }), LightFault::IgnoredSetting);
   EXPECT_NE(message.find("01 02 03"), std::string::npos) << message;
+}
+
+/// Says anything at all, most of it nearly right.
+class Babble final : public ReportTransport {
+public:
+  Babble(unsigned seed, Clock& clock) : random_(seed), clock_(clock) {}
+  void send(const Report& report, Clock::Duration) override { sequence_ = report[1]; }
+  std::optional<ReceivedReport> receive(Clock::Duration timeout) override {
+    clock_.sleep_for(std::min<Clock::Duration>(timeout, std::chrono::milliseconds(1)));
+    if (random_() % 8 == 0) return {};
+    ReceivedReport report;
+    report.size = random_() % 4 == 0 ? random_() % (report_bytes + 1) : report_bytes;
+    for (auto& byte : report.bytes) byte = static_cast<std::uint8_t>(random_());
+    if (random_() % 2 == 0) report.bytes[1] = sequence_;
+    if (random_() % 2 == 0) report.bytes[2] = static_cast<std::uint8_t>(random_() % 140), report.bytes[3] = 0;
+    return report;
+  }
+
+private:
+  std::mt19937 random_;
+  Clock& clock_;
+  std::uint8_t sequence_ = 0;
+};
+
+TEST(Link, ThatHearsAnythingReadsWhatItAskedForOrThrows) {
+  VirtualClock clock;
+  int answered = 0, refused = 0;
+  for (unsigned seed = 0; seed < 2000; ++seed) {
+    Link link(std::make_unique<Babble>(seed, clock), clock);
+    const std::size_t bytes = seed % 3 == 0 ? 128 : 1;
+    try {
+      EXPECT_EQ(link.read(bytes == 1 ? Command::LedPolarity : Command::ErrorText, bytes).size(), bytes);
+      ++answered;
+    } catch (const LightEngineError&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(answered, 0);
+  EXPECT_GT(refused, 100);
 }
 
 }  // namespace

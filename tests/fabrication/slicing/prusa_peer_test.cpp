@@ -65,7 +65,7 @@ void expect_as_prusa_slicer(const std::string& mesh, const std::string& archive)
   std::size_t compared = 0;
   (void)slice_part(part.mesh, sl1_display(), options, {}, [&](SlicedLayer&& layer) {
     ASSERT_LT(layer.index, sums.size());
-    EXPECT_NEAR(static_cast<double>(layer.figures.gray_sum) / 255.0, sums[layer.index], 1e-3 * sums[layer.index]);
+    EXPECT_NEAR(static_cast<double>(layer.figures.gray_sum) / 255.0, sums[layer.index], 1e-4 * sums[layer.index]);
     if (layer.index % 60 == 7) {
       const Difference found = difference(to_pixels(layer.picture), peer.read_layer(layer.index));
       // AGG, which it draws by, scales a pixel's share by 256 and cuts at 255: up to one level more than rounding.

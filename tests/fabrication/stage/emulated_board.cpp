@@ -64,6 +64,11 @@ std::vector<std::string> EmulatedBoard::commands() const {
   return commands_;
 }
 
+std::vector<EmulatedBoard::Move> EmulatedBoard::moves() const {
+  const std::lock_guard lock(mutex_);
+  return moves_;
+}
+
 void EmulatedBoard::unplug() {
   const int master = master_.exchange(-1);
   if (master >= 0) ::close(master);
@@ -166,6 +171,7 @@ void EmulatedBoard::carry_out(const std::string& command) {
   if (command.starts_with("G28")) height_um_ = 150000;
   if (command.starts_with("G1 Z"))
     height_um_ = std::lround(std::strtod(command.c_str() + 4, nullptr) * 1000.0) + faults_.drift_um;
+  if (command.starts_with("G")) moves_.push_back({std::chrono::steady_clock::now(), height_um_});
   if (command == "M400") {
     for (int i = 0; i < faults_.busy; ++i) {
       say("echo:busy: processing");

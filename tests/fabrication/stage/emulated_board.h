@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <mutex>
@@ -41,6 +42,12 @@ public:
   [[nodiscard]] std::string port() const;
   void set(const BoardFaults& faults);
   [[nodiscard]] std::int64_t height_um() const { return height_um_; }
+  /// Every move's end: when, and where.
+  struct Move {
+    std::chrono::steady_clock::time_point at;
+    std::int64_t height_um;
+  };
+  [[nodiscard]] std::vector<Move> moves() const;
   /// The commands that were carried out, in their order.
   [[nodiscard]] std::vector<std::string> commands() const;
 
@@ -57,6 +64,7 @@ private:
   mutable std::mutex mutex_;
   BoardFaults faults_;
   std::vector<std::string> commands_;
+  std::vector<Move> moves_;
   long last_number_ = 0;
   bool halted_ = false;
   std::atomic<std::int64_t> height_um_{43210};

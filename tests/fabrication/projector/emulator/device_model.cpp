@@ -23,6 +23,7 @@ std::size_t register_size(std::uint16_t command) {
   switch (command) {
     case 0x0b01:
       return 3;
+    case 0x0200:
     case 0x1008:
     case 0x1009:
     case 0x1a00:
@@ -43,15 +44,11 @@ std::size_t register_size(std::uint16_t command) {
 DeviceModel::DeviceModel(Clock& clock, Kind kind) : clock_(clock), kind_(kind) { defaults(); }
 
 void DeviceModel::defaults() {
-  registers_ = {{0x0b01, {0x97, 0x78, 0x7d}},
-                {0x1008, {0}},
-                {0x1009, {0}},
-                {0x1a00, {0}},
-                {0x1a01, {0}},
-                {0x1a05, {0}},
-                {0x1a07, {8}},
-                {0x1a1b, {1}},
-                {0x1a31, {0, 0, 0, 0, 0, 0}}};
+  registers_ = {{0x0200, {0}}, {0x0b01, {0x97, 0x78, 0x7d}},
+                {0x1008, {0}}, {0x1009, {0}},
+                {0x1a00, {0}}, {0x1a01, {0}},
+                {0x1a05, {0}}, {0x1a07, {8}},
+                {0x1a1b, {1}}, {0x1a31, {0, 0, 0, 0, 0, 0}}};
   entries_.clear();
   table_is_current_ = false;
   memory_ = {};
@@ -179,14 +176,18 @@ void DeviceModel::reply(std::uint8_t flags, std::uint8_t sequence, const Answer&
   if (fault == Fault::ZeroLength) bytes[2] = bytes[3] = 0;
   if (fault == Fault::OverLong) bytes[2] = 200;
   if (fault == Fault::ShortReply) bytes.resize(3);
-  if (late_) outgoing_.push_back(*late_);
+  if (late_) send(*late_);
   late_.reset();
   if (fault == Fault::StaleReply) {
     Bytes stale = bytes;
     --stale[1];
     stale[4] ^= 0xff;
-    outgoing_.push_back(stale);
+    send(stale);
   }
+  send(bytes);
+}
+
+void DeviceModel::send(const Bytes& bytes) {
   for (std::size_t at = 0; at < bytes.size(); at += 64) {
     const auto first = bytes.begin() + static_cast<std::ptrdiff_t>(at);
     outgoing_.emplace_back(first, first + static_cast<std::ptrdiff_t>(std::min<std::size_t>(64, bytes.size() - at)));
@@ -228,7 +229,15 @@ DeviceModel::Answer DeviceModel::read(std::uint16_t command) {
 }
 
 std::uint8_t DeviceModel::write(std::uint16_t command, const Bytes& data) {
+  if (registers_[0x0200][0] == 1 && command != 0x0200) return not_in_this_mode;
   switch (command) {
+    case 0x0200:
+      if (data.size() != 1 || data[0] > 1) return bad_parameter;
+      // Parking takes two minutes and three seconds, and is not interrupted.
+      if (data[0] == 0 && clock_.now() < parked_at_) return not_in_this_mode;
+      if (data[0] == 1) parked_at_ = clock_.now() + std::chrono::seconds(123);
+      registers_[0x0200] = data;
+      return 0;
     case 0x1a1b:
       return data.size() == 1 ? write_mode(data[0]) : bad_parameter;
     case 0x1a24:
@@ -418,6 +427,11 @@ void DeviceModel::power_cycle() {
   advance();
   defaults();
   update_light(clock_.now());
+}
+
+void DeviceModel::stand_by() {
+  const Lock lock(mutex_);
+  static_cast<void>(write(0x0200, {1}));
 }
 
 void DeviceModel::heal_sequencer() {

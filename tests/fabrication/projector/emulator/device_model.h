@@ -80,6 +80,7 @@ public:
   void stall_out_report(int nth) { stall_out_in_ = nth; }
   [[nodiscard]] std::size_t faults_left();
   void power_cycle();
+  void stand_by();
   void heal_sequencer();
   void show_video(const Bytes& picture);
   void lock_video(bool locked);
@@ -112,6 +113,7 @@ private:
   /// False: the message goes no further.
   bool disturb(const ScriptedFault& fault, std::uint16_t command);
   void reply(std::uint8_t flags, std::uint8_t sequence, const Answer& answer, std::optional<Fault> fault);
+  void send(const Bytes& bytes);
   [[nodiscard]] Answer read(std::uint16_t command);
   [[nodiscard]] std::uint8_t write(std::uint16_t command, const Bytes& data);
   [[nodiscard]] std::uint8_t write_mode(std::uint8_t mode);
@@ -143,7 +145,7 @@ private:
   std::array<Loading, 2> loading_;
   bool runs_ = false;
   std::optional<Clock::Duration> sequence_end_;
-  Clock::Duration mode_settles_{0};
+  Clock::Duration mode_settles_{0}, parked_at_{0};
   std::uint8_t mode_before_ = 1;
   bool sequencer_error_ = false, sequencer_abort_ = false, secondary_ = true, locked_ = true;
   bool runs_on_ = false;

@@ -8,6 +8,7 @@ TEST(Usb, OfTheProjector) { GTEST_SKIP() << "umockdev (Debian: libumockdev-dev) 
 
 #include "fabrication/projector/dlpc900.h"
 #include "fabrication/projector/usb_transport.h"
+#include "tests/fabrication/projector/emulated_window.h"
 #include "tests/fabrication/projector/emulator/usb_device.h"
 
 namespace mezzotint {
@@ -117,6 +118,32 @@ TEST_F(Usb, LayersAreDecodedBitForBitAndLitForTheirTime) {
     EXPECT_GE(log[i].on, windows[i].first);
     EXPECT_LE(log[i].off, windows[i].second);
   }
+}
+
+TEST_F(Usb, LightIsGatedOverUsbWhileVideoShowsTheLayer) {
+  emulator::UsbDevice bus(device);
+  const auto engine =
+      make_dlpc900(dlpc900::open_usb(), clock, {}, std::make_unique<EmulatedWindow>(device, columns, rows));
+  engine->prepare({});
+  for (int layer = 0; layer < 3; ++layer) {
+    draw(static_cast<unsigned>(layer));
+    engine->show(picture(), milliseconds(300));
+    const auto begin = clock.now();
+    const auto report = engine->expose([] { return true; });
+    const auto end = clock.now();
+    const auto light = device.light_log().back();
+    EXPECT_EQ(light.picture, gray) << "layer " << layer;
+    EXPECT_TRUE(begin <= light.on && light.off <= end);
+    const auto lit = light.off - light.on;
+    EXPECT_LE(std::abs((lit - report.lit).count()), report.uncertainty.count());
+    // Late by what the orders and a busy computer took, and no more.
+    EXPECT_GE(lit + report.uncertainty, milliseconds(300));
+    EXPECT_LE(lit, milliseconds(300) + 2 * report.uncertainty + milliseconds(100));
+    RecordProperty("layer_" + std::to_string(layer) + "_late_us", static_cast<int>((lit.count() - 300'000'000) / 1000));
+    RecordProperty("layer_" + std::to_string(layer) + "_uncertainty_us",
+                   static_cast<int>(report.uncertainty.count() / 1000));
+  }
+  EXPECT_EQ(device.light_log().size(), 3U);
 }
 
 TEST_F(Usb, EveryFaultOfTheWire) {
