@@ -157,11 +157,13 @@ void PrintSession::separate(std::size_t layer) {
 void PrintSession::lift_from(std::int64_t height_um) {
   move(height_um + profile_.slow_lift_um, profile_.slow_lift_um_per_s);
   move(height_um + profile_.slow_lift_um + profile_.fast_lift_um, profile_.fast_lift_um_per_s);
+  is_lifted_ = true;
 }
 
 void PrintSession::move(std::int64_t height_um, double speed_um_per_s) {
   // A move that fails may have ended anywhere between.
   at_um_ = std::max(at_um_.value_or(height_um), height_um);
+  is_lifted_ = false;
   stage_.move_to(height_um, speed_um_per_s);
   at_um_ = height_um;
 }
@@ -341,7 +343,8 @@ bool PrintSession::move_away() noexcept {
   try {
     if (!stage_.is_homed()) return false;
     // At its home the platform is away already.
-    if (at_um_) lift_from(std::min(*at_um_, profile_.highest_um - profile_.slow_lift_um - profile_.fast_lift_um));
+    if (at_um_ && !is_lifted_)
+      lift_from(std::min(*at_um_, profile_.highest_um - profile_.slow_lift_um - profile_.fast_lift_um));
     return true;
   } catch (...) {
     return false;

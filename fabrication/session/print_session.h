@@ -136,8 +136,9 @@ private:
   SessionControl& control_;
   SessionOptions options_;
   std::optional<Journal> journal_;
-  std::vector<double> left_s_;         ///< expected from a layer on
-  double showing_s_ = 0.0;             ///< of the last picture
+  std::vector<double> left_s_;  ///< expected from a layer on
+  double showing_s_ = 0.0;      ///< of the last picture
+  bool is_lifted_ = false;
   std::optional<std::int64_t> at_um_;  ///< the highest place where the platform may be; nothing before the first move
 };
 
