@@ -361,7 +361,9 @@ void PrintSession::fail(const std::string& message, ExitStatus status) {
   } else {
     text += "\nThe light is off.";
   }
-  text += away ? " The platform is lifted." : " The platform could not be moved: it may rest on the vat's floor.";
+  text += away     ? " The platform is lifted."
+          : at_um_ ? " The platform could not be moved: it may rest on the vat's floor."
+                   : " The platform was not moved yet.";
   const auto& open = journal_->state().open;
   if (open && !open->certain) {
     text += fmt::format(" It is uncertain how much light layer {} got: between {:.3g} and {:.3g} s of {:.3g} s{}.",
