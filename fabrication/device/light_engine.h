@@ -91,6 +91,9 @@ struct LayerPicture {
   std::span<const std::uint8_t> gray;
 };
 
+/// The same picture mirrored left to right, top to bottom, or both.
+[[nodiscard]] std::vector<std::uint8_t> flipped(const LayerPicture& picture, const LightSettings& settings);
+
 /// What `show` will cost.
 struct UploadEstimate {
   std::size_t bytes = 0;  ///< over the control link; 0 where the picture goes by a video cable

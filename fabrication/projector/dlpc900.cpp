@@ -63,7 +63,8 @@ private:
   std::unique_ptr<LayerWindow> window_;
   Hardware hardware_;
   std::vector<Setting> settings_;  ///< empty until prepared
-  Clock::Duration exposure_{0};    ///< of the picture that is shown and not yet lit; 0: none
+  LightSettings orientation_;
+  Clock::Duration exposure_{0};  ///< of the picture that is shown and not yet lit; 0: none
 
   /// What is known of the light of the exposure under way.
   struct Lit {
@@ -105,6 +106,7 @@ void Dlpc900::prepare(const LightSettings& settings) {
   enter_display_mode(link_, clock_, options_, hardware_.firmware);
   require_unchanged(link_, wanted);
   settings_ = wanted;
+  orientation_ = settings;
 }
 
 void Dlpc900::require_picture(const LayerPicture& picture) const {
@@ -125,13 +127,15 @@ void Dlpc900::show(const LayerPicture& picture, Clock::Duration exposure) {
   require_picture(picture);
   require(exposure.count() > 0, "an exposure is longer than 0");
   exposure_ = {};
+  const auto gray = flipped(picture, orientation_);
+  const LayerPicture turned{picture.columns, picture.rows, gray};
   try {
     require_unchanged(link_, settings_);
     require_healthy(read_hardware_status(link_), hardware_.controllers);
     if (uploads()) {
-      load_by_upload(picture, exposure);
+      load_by_upload(turned, exposure);
     } else {
-      load_by_video(picture);
+      load_by_video(turned);
     }
   } catch (const LightEngineError&) {
     if (!try_light_off()) throw;  // what went wrong first is what is told

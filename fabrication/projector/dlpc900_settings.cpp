@@ -87,12 +87,14 @@ void wake(Link& link, Clock& clock) {
 std::vector<Setting> settings_that_read_back(const LightSettings& settings, const Dlpc900Options& options) {
   const auto current = static_cast<std::uint8_t>(settings.led_amplitude);
   const auto flag = [](bool value) { return std::vector<std::uint8_t>{static_cast<std::uint8_t>(value ? 1 : 0)}; };
-  std::vector<Setting> list = {{Command::LedCurrents, {current, current, current}},
-                               {Command::LedPolarity, flag(options.led_polarity_inverted)},
-                               // Off, and by force: after a reset the sequencer has them, and a start would light them.
-                               {Command::LedEnable, {leds_off}},
-                               {Command::FlipLongAxis, flag(settings.flip_columns)},
-                               {Command::FlipShortAxis, flag(settings.flip_rows)}};
+  std::vector<Setting> list = {
+      {Command::LedCurrents, {current, current, current}},
+      {Command::LedPolarity, flag(options.led_polarity_inverted)},
+      // Off, and by force: after a reset the sequencer has them, and a start would light them.
+      {Command::LedEnable, {leds_off}},
+      // Pictures are flipped before they are sent: a pair of controllers cannot flip the long axis.
+      {Command::FlipLongAxis, flag(false)},
+      {Command::FlipShortAxis, flag(false)}};
   if (options.way == Dlpc900Options::Way::Video) {
     list.push_back({Command::VideoReceiver, {static_cast<std::uint8_t>(options.video_receiver)}});
     list.push_back({Command::InputSource, {parallel_source_24_bit}});
@@ -134,9 +136,10 @@ void enter_display_mode(Link& link, Clock& clock, const Dlpc900Options& options,
   if (options.way == Dlpc900Options::Way::Upload) {
     return link.set(Command::DisplayMode, byte_of(DisplayMode::PatternOnTheFly));
   }
+  // The mode first: receiver and source can be chosen in video mode alone.
+  link.set(Command::DisplayMode, byte_of(DisplayMode::Video));
   link.set(Command::VideoReceiver, {static_cast<std::uint8_t>(options.video_receiver)});
   link.set(Command::InputSource, {parallel_source_24_bit});
-  link.set(Command::DisplayMode, byte_of(DisplayMode::Video));
   wait_for_lock(link, clock);
   if (!options.video_by_sequencer) {
     // Since firmware 6 the curve of plain video can be chosen: a linear one.

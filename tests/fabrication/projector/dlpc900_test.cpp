@@ -372,10 +372,20 @@ TEST(Dlpc900Pair, BothHalvesReachTheirControllers) {
   engine->show({columns, rows, gray}, std::chrono::seconds(1));
   static_cast<void>(engine->expose([] { return true; }));
   ASSERT_EQ(device.light_log().size(), 1U);
-  EXPECT_EQ(device.light_log()[0].picture, gray);
+  const auto picture = device.light_log()[0].picture;
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < gray.size(); ++i)
+    wrong += picture[i] != gray[i - i % columns + columns - 1 - i % columns];
+  EXPECT_EQ(wrong, 0U) << "mirrored left to right";
   EXPECT_EQ(device.light_log()[0].current, 200);
-  EXPECT_EQ(device.register_value(0x1008), emulator::Bytes{1});
-  EXPECT_EQ(device.register_value(0x1009), emulator::Bytes{0});
+  engine->prepare({.flip_rows = true});
+  engine->show({columns, rows, gray}, std::chrono::seconds(1));
+  static_cast<void>(engine->expose([] { return true; }));
+  wrong = 0;
+  const auto second = device.light_log()[1].picture;
+  for (std::size_t i = 0; i < gray.size(); ++i)
+    wrong += second[i] != gray[(rows - 1 - i / columns) * columns + i % columns];
+  EXPECT_EQ(wrong, 0U) << "mirrored top to bottom";
 }
 
 TEST(Dlpc900Pair, AMissingSecondaryControllerIsRefused) {

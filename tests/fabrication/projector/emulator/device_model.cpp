@@ -259,6 +259,9 @@ std::uint8_t DeviceModel::write(std::uint16_t command, const Bytes& data) {
   }
   if (register_size(command) == 0) return bad_command;
   if (data.size() != register_size(command)) return bad_parameter;
+  if (command == 0x1008 && controllers() == 2 && data[0] != 0) return bad_command;  // no such flip with a pair
+  if (command == 0x1a01 && mode() != 0) return not_in_this_mode;
+  if (command == 0x1a00 && mode() != 0 && mode() != 2) return not_in_this_mode;
   registers_[command] = data;
   return 0;
 }

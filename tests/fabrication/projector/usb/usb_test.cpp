@@ -85,9 +85,9 @@ TEST_F(Usb, TheKernelsDriverIsGivenBack) {
 TEST_F(Usb, SettingsAreReadBack) {
   emulator::UsbDevice bus(device);
   const auto engine = connect();
-  engine->prepare({.led_amplitude = 77, .flip_rows = true});
+  engine->prepare({.led_amplitude = 77});
   EXPECT_EQ(device.register_value(0x0b01), (emulator::Bytes{77, 77, 77}));
-  EXPECT_EQ(device.register_value(0x1009), emulator::Bytes{1});
+  EXPECT_EQ(device.register_value(0x1a1b), emulator::Bytes{3});
   device.script({Fault::IgnoreWrite, 0x0b01, 1});
   device.script({Fault::IgnoreWrite, 0x0b01, 3});
   EXPECT_EQ(fault_of([&] { engine->prepare({.led_amplitude = 78}); }), LightFault::IgnoredSetting);
