@@ -34,7 +34,10 @@ pkg_check_modules(ZIP REQUIRED IMPORTED_TARGET libzip)
 pkg_check_modules(DEFLATE REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(LIB3MF REQUIRED IMPORTED_TARGET lib3MF)
 pkg_check_modules(TOMLPLUSPLUS REQUIRED IMPORTED_TARGET tomlplusplus)
+pkg_check_modules(SERIALPORT REQUIRED IMPORTED_TARGET libserialport)
 pkg_check_modules(NETTLE REQUIRED IMPORTED_TARGET nettle)
+pkg_check_modules(LIBUSB REQUIRED IMPORTED_TARGET libusb-1.0)
+pkg_check_modules(SDL2 REQUIRED IMPORTED_TARGET sdl2)
 
 # NLopt's package configuration names only the C library, which lacks StoGO and AGS.
 find_library(NLOPT_CXX_LIBRARY nlopt_cxx REQUIRED)
