@@ -32,9 +32,10 @@ PixelWindow window_with_relief(const PixelWindow& window, const PrinterProfile& 
   const bool fits = window.column >= least && window.row >= least &&
                     window.column + window.columns + least <= profile.pixels_x &&
                     window.row + window.rows + least <= profile.pixels_y;
-  require(fits, fmt::format("the part fits into the printer's field, but not with a relief of {:.4g} um around it; make "
-                            "it smaller or move it by {} pixels",
-                            highest.um(), least));
+  require(fits,
+          fmt::format("the part fits into the printer's field, but not with a relief of {:.4g} um around it; make "
+                      "it smaller or move it by {} pixels",
+                      highest.um(), least));
   const auto most = static_cast<std::size_t>(std::ceil(longest_mitre * pixels)) + 1;
   const Interval x = widened(window.column, window.columns, most, profile.pixels_x);
   const Interval y = widened(window.row, window.rows, most, profile.pixels_y);

@@ -14,7 +14,7 @@ public:
   [[nodiscard]] virtual std::size_t columns() const = 0;
   [[nodiscard]] virtual std::size_t rows() const = 0;
   /// Returns once the display has been given the picture; the projector shows it some frames later.
-  virtual void show(const LayerPicture& picture) = 0;
+  virtual void show(const ShownPicture& picture) = 0;
   virtual void blank() = 0;
 };
 

@@ -30,7 +30,7 @@ std::string_view fault_name(LightFault fault) {
   return "unknown";
 }
 
-std::vector<std::uint8_t> flipped(const LayerPicture& picture, const LightSettings& settings) {
+std::vector<std::uint8_t> flipped(const ShownPicture& picture, const LightSettings& settings) {
   std::vector<std::uint8_t> gray(picture.gray.begin(), picture.gray.end());
   const auto columns = static_cast<std::ptrdiff_t>(picture.columns);
   const auto row = [&](std::size_t index) { return gray.begin() + static_cast<std::ptrdiff_t>(index) * columns; };

@@ -85,14 +85,14 @@ struct LightSettings {
 ///
 /// Shape    rows × columns of the light engine, 8 bits a pixel, row after row; row 0 is the projector's first
 ///          row, that is the *top* of the archive's PNG (`JobLayer::gray` has row 0 at y = 0: turn it).
-struct LayerPicture {
+struct ShownPicture {
   std::size_t columns = 0;
   std::size_t rows = 0;
   std::span<const std::uint8_t> gray;
 };
 
 /// The same picture mirrored left to right, top to bottom, or both.
-[[nodiscard]] std::vector<std::uint8_t> flipped(const LayerPicture& picture, const LightSettings& settings);
+[[nodiscard]] std::vector<std::uint8_t> flipped(const ShownPicture& picture, const LightSettings& settings);
 
 /// What `show` will cost.
 struct UploadEstimate {
@@ -132,11 +132,11 @@ public:
   virtual void prepare(const LightSettings& settings) = 0;
 
   /// Talks to no device.
-  [[nodiscard]] virtual UploadEstimate estimate(const LayerPicture& picture) const = 0;
+  [[nodiscard]] virtual UploadEstimate estimate(const ShownPicture& picture) const = 0;
 
   /// Loads a picture and how long it will be lit; returns when `expose` may follow. Light stays off.
   /// Reads the settings back first: a device that reset itself since is found out here.
-  virtual void show(const LayerPicture& picture, Clock::Duration exposure) = 0;
+  virtual void show(const ShownPicture& picture, Clock::Duration exposure) = 0;
 
   /// Lights the shown picture for its exposure, once: a second call needs another `show`.
   /// @param go_on  asked a few times a second while the light is on; false puts it off and returns

@@ -11,9 +11,9 @@ void VirtualLight::prepare(const LightSettings& settings) {
   require(settings.led_amplitude >= 0 && settings.led_amplitude <= 255, "an LED amplitude lies between 0 and 255");
 }
 
-UploadEstimate VirtualLight::estimate(const LayerPicture&) const { return {}; }
+UploadEstimate VirtualLight::estimate(const ShownPicture&) const { return {}; }
 
-void VirtualLight::show(const LayerPicture& picture, Clock::Duration exposure) {
+void VirtualLight::show(const ShownPicture& picture, Clock::Duration exposure) {
   require(picture.columns == identity_.columns && picture.rows == identity_.rows &&
               picture.gray.size() == picture.columns * picture.rows,
           "a picture of the light engine's size is shown, no other");

@@ -12,8 +12,8 @@ public:
 
   [[nodiscard]] const LightEngineIdentity& identity() const override { return identity_; }
   void prepare(const LightSettings& settings) override;
-  [[nodiscard]] UploadEstimate estimate(const LayerPicture& picture) const override;
-  void show(const LayerPicture& picture, Clock::Duration exposure) override;
+  [[nodiscard]] UploadEstimate estimate(const ShownPicture& picture) const override;
+  void show(const ShownPicture& picture, Clock::Duration exposure) override;
   [[nodiscard]] ExposureReport expose(const std::function<bool()>& go_on) override;
   void light_off() override { is_on_ = false; }
   [[nodiscard]] bool try_light_off() noexcept override {

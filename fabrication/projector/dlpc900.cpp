@@ -33,8 +33,8 @@ public:
 
   [[nodiscard]] const LightEngineIdentity& identity() const override { return hardware_.identity; }
   void prepare(const LightSettings& settings) override;
-  [[nodiscard]] UploadEstimate estimate(const LayerPicture& picture) const override;
-  void show(const LayerPicture& picture, Clock::Duration exposure) override;
+  [[nodiscard]] UploadEstimate estimate(const ShownPicture& picture) const override;
+  void show(const ShownPicture& picture, Clock::Duration exposure) override;
   [[nodiscard]] ExposureReport expose(const std::function<bool()>& go_on) override;
   void light_off() override;
   [[nodiscard]] bool try_light_off() noexcept override;
@@ -43,9 +43,9 @@ public:
 private:
   [[nodiscard]] bool uploads() const { return options_.way == Dlpc900Options::Way::Upload; }
   [[nodiscard]] bool has_sequence() const { return uploads() || options_.video_by_sequencer; }
-  void require_picture(const LayerPicture& picture) const;
-  void load_by_upload(const LayerPicture& picture, Clock::Duration exposure);
-  void load_by_video(const LayerPicture& picture);
+  void require_picture(const ShownPicture& picture) const;
+  void load_by_upload(const ShownPicture& picture, Clock::Duration exposure);
+  void load_by_video(const ShownPicture& picture);
   void stop_sequence() { link_.order(Command::Sequence, byte_of(SequenceAction::Stop)); }
 
   Moment start_light();
@@ -109,7 +109,7 @@ void Dlpc900::prepare(const LightSettings& settings) {
   orientation_ = settings;
 }
 
-void Dlpc900::require_picture(const LayerPicture& picture) const {
+void Dlpc900::require_picture(const ShownPicture& picture) const {
   const auto& identity = hardware_.identity;
   require(picture.columns == identity.columns && picture.rows == identity.rows &&
               picture.gray.size() == picture.columns * picture.rows,
@@ -117,18 +117,18 @@ void Dlpc900::require_picture(const LayerPicture& picture) const {
                       identity.columns, identity.rows));
 }
 
-UploadEstimate Dlpc900::estimate(const LayerPicture& picture) const {
+UploadEstimate Dlpc900::estimate(const ShownPicture& picture) const {
   require_picture(picture);
   return uploads() ? estimate_upload(encode_halves(picture, hardware_.controllers)) : UploadEstimate{};
 }
 
-void Dlpc900::show(const LayerPicture& picture, Clock::Duration exposure) {
+void Dlpc900::show(const ShownPicture& picture, Clock::Duration exposure) {
   require(!settings_.empty(), "prepare the projector before it shows a layer");
   require_picture(picture);
   require(exposure.count() > 0, "an exposure is longer than 0");
   exposure_ = {};
   const auto gray = flipped(picture, orientation_);
-  const LayerPicture turned{picture.columns, picture.rows, gray};
+  const ShownPicture turned{picture.columns, picture.rows, gray};
   try {
     require_unchanged(link_, settings_);
     require_healthy(read_hardware_status(link_), hardware_.controllers);
@@ -144,7 +144,7 @@ void Dlpc900::show(const LayerPicture& picture, Clock::Duration exposure) {
   exposure_ = exposure;
 }
 
-void Dlpc900::load_by_upload(const LayerPicture& picture, Clock::Duration exposure) {
+void Dlpc900::load_by_upload(const ShownPicture& picture, Clock::Duration exposure) {
   const auto images = encode_halves(picture, hardware_.controllers);
   const auto cost = estimate_upload(images);
   require(options_.force_upload || cost.duration <= options_.longest_upload,
@@ -161,7 +161,7 @@ void Dlpc900::load_by_upload(const LayerPicture& picture, Clock::Duration exposu
   link_.set(Command::PatternTable, table);  // revision F of the guide has it here, revision J before the images
 }
 
-void Dlpc900::load_by_video(const LayerPicture& picture) {
+void Dlpc900::load_by_video(const ShownPicture& picture) {
   const auto status = read_main_status(link_);
   if (!status.source_is_locked) {
     throw LightEngineError(LightFault::LostSync, "the projector has lost its video signal");

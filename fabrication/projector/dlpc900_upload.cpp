@@ -32,7 +32,7 @@ void upload_image(Link& link, const ImageCommands& commands, const std::vector<s
 
 }  // namespace
 
-std::vector<std::vector<std::uint8_t>> encode_halves(const LayerPicture& picture, std::size_t controllers) {
+std::vector<std::vector<std::uint8_t>> encode_halves(const ShownPicture& picture, std::size_t controllers) {
   std::vector<std::vector<std::uint8_t>> images;
   const std::size_t columns = picture.columns / controllers;
   for (std::size_t c = 0; c < controllers; ++c) {

@@ -6,7 +6,7 @@
 namespace mezzotint::dlpc900 {
 
 /// A gray picture as one encoded image a controller: the left half to the primary, the right half to the secondary.
-[[nodiscard]] std::vector<std::vector<std::uint8_t>> encode_halves(const LayerPicture& picture,
+[[nodiscard]] std::vector<std::vector<std::uint8_t>> encode_halves(const ShownPicture& picture,
                                                                    std::size_t controllers);
 
 /// Full-speed USB carries one report a millisecond at best, acknowledgements included: 64 kB/s at most.

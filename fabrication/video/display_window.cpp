@@ -89,7 +89,7 @@ public:
   [[nodiscard]] std::size_t columns() const override { return columns_; }
   [[nodiscard]] std::size_t rows() const override { return rows_; }
 
-  void show(const LayerPicture& picture) override {
+  void show(const ShownPicture& picture) override {
     require(picture.columns == columns_ && picture.rows == rows_ && picture.gray.size() == columns_ * rows_,
             fmt::format("a layer on this display has {} x {} pixels, not {} x {}", columns_, rows_, picture.columns,
                         picture.rows));

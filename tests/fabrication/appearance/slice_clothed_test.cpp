@@ -35,7 +35,8 @@ SurfaceRelief constant(double um) {
 
 TEST(SliceClothed, GrowsACylinderByItsRelief) {
   const double r = 0.25, h = 0.3, d = 0.015;
-  const Sliced plain = sliced(cylinder(r, h, 128, 3), constant(0.0)), grown = sliced(cylinder(r, h, 128, 3), constant(15.0));
+  const Sliced plain = sliced(cylinder(r, h, 128, 3), constant(0.0)),
+               grown = sliced(cylinder(r, h, 128, 3), constant(15.0));
   const double area = std::numbers::pi * r * r, wide = std::numbers::pi * (r + d) * (r + d);
   EXPECT_NEAR(plain.summary.volume_mm3, area * h, 1e-3 * area * h);
   EXPECT_NEAR(grown.summary.volume_mm3, wide * (h + d), 2e-3 * wide * h);

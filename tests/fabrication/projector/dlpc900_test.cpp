@@ -37,7 +37,7 @@ protected:
     engine = make_dlpc900(std::make_unique<EmulatedTransport>(device, clock), clock, options,
                           std::make_unique<EmulatedWindow>(device, columns, rows));
   }
-  [[nodiscard]] LayerPicture picture() const { return {columns, rows, gray}; }
+  [[nodiscard]] ShownPicture picture() const { return {columns, rows, gray}; }
   void show() {
     engine->prepare({});
     engine->show(picture(), exposure);

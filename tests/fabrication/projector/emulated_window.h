@@ -12,7 +12,7 @@ public:
       : device_(device), columns_(columns), rows_(rows) {}
   [[nodiscard]] std::size_t columns() const override { return columns_; }
   [[nodiscard]] std::size_t rows() const override { return rows_; }
-  void show(const LayerPicture& picture) override { device_.show_video({picture.gray.begin(), picture.gray.end()}); }
+  void show(const ShownPicture& picture) override { device_.show_video({picture.gray.begin(), picture.gray.end()}); }
   void blank() override { device_.show_video(emulator::Bytes(columns_ * rows_, 0)); }
 
 private:

@@ -126,9 +126,9 @@ public:
     settings_ = settings;
     prepared_ = true;
   }
-  UploadEstimate estimate(const LayerPicture&) const override { return {}; }
+  UploadEstimate estimate(const ShownPicture&) const override { return {}; }
 
-  void show(const LayerPicture& picture, Clock::Duration exposure) override {
+  void show(const ShownPicture& picture, Clock::Duration exposure) override {
     world_.clock.sleep_for(seconds(0.05));
     disturb();
     if (!prepared_) throw LightEngineError(LightFault::IgnoredSetting, "not prepared");

@@ -29,7 +29,7 @@ protected:
   std::unique_ptr<LightEngine> connect() {
     return make_dlpc900(dlpc900::open_usb(), clock, {.way = Dlpc900Options::Way::Upload});
   }
-  [[nodiscard]] LayerPicture picture() const { return {columns, rows, gray}; }
+  [[nodiscard]] ShownPicture picture() const { return {columns, rows, gray}; }
   /// Blocks of gray across the border between the controllers.
   void draw(unsigned seed) {
     for (std::size_t i = 0; i < gray.size(); ++i) {
