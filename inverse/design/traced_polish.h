@@ -10,10 +10,11 @@ namespace mezzotint {
 
 /// What tracing is spent on after a search by slopes.
 ///
-/// Measured (design_race: targets traced, held-out error traced, light at 20°; five targets a family): a correction takes a sinusoid's cube-root error from .020, .013, .012, .013, .012 to .013,
-/// .010, .012, .007, .013 for two thirds more time, that of ridges with a sinusoid from .007, .024, .021, .040, .011 to
-/// .007, .024, .014, .037, .011 for a third more; noise, lost in its draws' scatter, gets none. A polish of 40
-/// evaluations more took .013 to .012 and .007 to .008, for as much time again: there is none by default.
+/// Measured (design_race: targets traced, held-out error traced, light at 20°; five targets a family): a correction
+/// takes a sinusoid's cube-root error from .020, .013, .012, .013, .012 to .013, .010, .012, .007, .013 for two thirds
+/// more time, that of ridges with a sinusoid from .007, .024, .021, .040, .011 to .007, .024, .014, .037, .011 for a
+/// third more; noise, lost in its draws' scatter, gets none. A polish of 40 evaluations more took .013 to .012 and .007
+/// to .008, for as much time again: there is none by default.
 struct TracedPlan {
   int corrections = 1;    ///< of the goal by what tracing shows, each followed by a search by slopes; 0 … 4
   int evaluations = 0;    ///< of a last search on traced light itself; 0: none
