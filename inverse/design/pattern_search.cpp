@@ -46,7 +46,7 @@ struct Evaluation {
 
 // Enough to tell valleys apart, with few draws: 1/σ samples a pixel (σ the Gaussian blur's width in pixels) hold all
 // but a hundredth of the light's contrast. The cure curve's logarithm sharpens what it makes of it, so that a lobe may
-// be off by a few per cent: the last searches take the patch's own samples.
+// be off by a few per cent: the last searches take the patch's own samples, and so do searches for slopes alone.
 PatchOptions coarse(PatchOptions patch, const PrinterProfile& printer) {
   if (printer.spread.kernel != PixelSpread::Kernel::Gaussian || printer.spread.width.um() <= 0.0) return patch;
   const double enough = std::max(2.0, std::ceil(printer.pixel_pitch / printer.spread.width - 1e-9));
@@ -72,7 +72,9 @@ public:
         progress_(progress),
         moments_(pattern, variables, printer, patch.wavelength),
         fine_{model_of(printer, patch, plan.seeds), 1.0},
-        coarse_{model_of(printer, coarse(patch, printer), first_of(plan.seeds, plan.coarse_draws)), 1.0} {
+        coarse_{model_of(printer, goal.by_light() ? coarse(patch, printer) : patch,
+                         first_of(plan.seeds, plan.coarse_draws)),
+                1.0} {
     coarse_.cost = coarse_.model.samples() / fine_.model.samples();
   }
 
