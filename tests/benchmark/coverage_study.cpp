@@ -47,28 +47,16 @@ double seconds_a_layer(const std::vector<RasterTriangle>& triangles, SlabRaster&
   return median(times);
 }
 
-test::Outline cut(const test::Outline& outline, std::size_t axis, double value, double side) {
-  test::Outline kept;
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const auto& a = outline[i];
-    const auto& b = outline[(i + 1) % outline.size()];
-    const double da = side * (a[axis] - value), db = side * (b[axis] - value);
-    if (da >= 0.0) kept.push_back(a);
-    if (da * db < 0.0) kept.push_back({a[0] + da / (da - db) * (b[0] - a[0]), a[1] + da / (da - db) * (b[1] - a[1])});
-  }
-  return kept;
-}
-
 // Exact by other means: row by row, then pixel by pixel. Only pixels that are partly covered are kept.
 std::map<std::pair<std::size_t, std::size_t>, double> partly_covered(const test::Outline& outline, const Image& hint) {
   std::map<std::pair<std::size_t, std::size_t>, double> areas;
   for (std::size_t r = 0; r < rows; ++r) {
     const double y = static_cast<double>(r);
-    const test::Outline strip = cut(cut(outline, 1, y, 1.0), 1, y + 1.0, -1.0);
+    const test::Outline strip = test::cut_by(test::cut_by(outline, 1, y, 1.0), 1, y + 1.0, -1.0);
     for (std::size_t c = 0; c < columns; ++c) {
       if (hint[r][c] <= 0.0F || hint[r][c] >= 1.0F) continue;
       const double x = static_cast<double>(c);
-      areas[{r, c}] = test::area(cut(cut(strip, 0, x, 1.0), 0, x + 1.0, -1.0));
+      areas[{r, c}] = test::area(test::cut_by(test::cut_by(strip, 0, x, 1.0), 0, x + 1.0, -1.0));
     }
   }
   return areas;

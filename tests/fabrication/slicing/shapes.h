@@ -13,6 +13,20 @@ namespace mezzotint::test {
 
 using Outline = std::vector<std::array<double, 2>>;
 
+/// The part of an outline on one side of a line: coordinate `axis` ≥ value for side 1, ≤ value for −1. Four cuts leave
+/// what lies in a pixel, independent of the rasteriser.
+inline Outline cut_by(const Outline& outline, std::size_t axis, double value, double side) {
+  Outline kept;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const auto& a = outline[i];
+    const auto& b = outline[(i + 1) % outline.size()];
+    const double da = side * (a[axis] - value), db = side * (b[axis] - value);
+    if (da >= 0.0) kept.push_back(a);
+    if (da * db < 0.0) kept.push_back({a[0] + da / (da - db) * (b[0] - a[0]), a[1] + da / (da - db) * (b[1] - a[1])});
+  }
+  return kept;
+}
+
 /// A regular polygon, counter-clockwise: a disc where it has many corners.
 inline Outline disc(double x, double y, double radius, std::size_t corners, double phase = 0.0) {
   Outline outline;

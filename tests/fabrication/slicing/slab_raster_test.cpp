@@ -50,22 +50,10 @@ Layer layer_of(const std::vector<RasterTriangle>& triangles, std::size_t layer, 
   return result;
 }
 
-// Independent of the rasteriser: the outline, cut to the pixel's square side by side, and its area by corners.
-Outline cut_by(const Outline& outline, std::size_t axis, double value, double side) {
-  Outline kept;
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const auto& a = outline[i];
-    const auto& b = outline[(i + 1) % outline.size()];
-    const double da = side * (a[axis] - value), db = side * (b[axis] - value);
-    if (da >= 0.0) kept.push_back(a);
-    if (da * db < 0.0) kept.push_back({a[0] + da / (da - db) * (b[0] - a[0]), a[1] + da / (da - db) * (b[1] - a[1])});
-  }
-  return kept;
-}
-
 double area_in_pixel(const Outline& outline, std::size_t column, std::size_t row) {
   const auto x = static_cast<double>(column), y = static_cast<double>(row);
-  return test::area(cut_by(cut_by(cut_by(cut_by(outline, 0, x, 1.0), 0, x + 1.0, -1.0), 1, y, 1.0), 1, y + 1.0, -1.0));
+  return test::area(test::cut_by(
+      test::cut_by(test::cut_by(test::cut_by(outline, 0, x, 1.0), 0, x + 1.0, -1.0), 1, y, 1.0), 1, y + 1.0, -1.0));
 }
 
 void expect_exact(const Outline& outline, const CoverageOptions& options) {
